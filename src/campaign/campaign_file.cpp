@@ -207,6 +207,9 @@ std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder, bool
   std::error_code unknown;
   if (!is_pattern(given) || fs::exists(path, unknown)) {
     if (!fs::exists(path, unknown)) at.refuse(path.string() + ": there is no such file");
+    if (fs::is_other(fs::status(path, unknown))) {
+      at.refuse(path.string() + ": is a pipe or device; expected a file, which tasks read again");
+    }
     return {path};
   }
   glob_t found{};

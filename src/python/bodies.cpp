@@ -233,6 +233,9 @@ format, allow_non_rigid, angle_unit, angle_frame, crs, default_crs, datum, metre
     lever_arm: for trajectories that bodies have of their own, as read_trajectory() takes them.
 messages: a list to which notes and warnings are appended.)DOC")
           .c_str());
+  add_checks(module, "read_vehicle", kKindOfModel);
+  add_checks(module, "read_vehicle", kModelFields);
+  add_checks(module, "read_vehicle", kTrajectoryFields);
 }
 
 void add_unsearched(py::module_& module) {

@@ -132,11 +132,12 @@ py::tuple check_of_value(FieldRange range, bool is_required) {
   }
 }
 
-/// Tells _arguments.py how the arguments of these names are checked.
+/// Passes to _arguments.py how a call checks the arguments of these names. call: its name for
+/// people; for a constructor and the properties, that of the class.
 template <typename... Fields>
-void add_checks(py::module_& module, const std::tuple<Fields...>& fields) {
+void add_checks(py::module_& module, const char* call, const std::tuple<Fields...>& fields) {
   if (!py::hasattr(module, "_checks")) module.attr("_checks") = py::dict();
-  py::dict checks = module.attr("_checks");
+  py::dict checks = module.attr("_checks").attr("setdefault")(call, py::dict());
   for_each_field(fields, [&checks](const auto& field) {
     using Value = typename std::decay_t<decltype(field)>::Value;
     checks[field.key] = check_of_value<Value>(field.range, field.is_required);

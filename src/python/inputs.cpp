@@ -97,7 +97,7 @@ messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the )DOC" +
        names_of_all_labels() + R"DOC( that the file has.)DOC")
           .c_str());
-  add_checks(module, kTrajectoryFields);
+  add_checks(module, "read_trajectory", kTrajectoryFields);
 }
 
 void add_read_alignment(py::module_& module) {
@@ -366,7 +366,8 @@ progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
 stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
           .c_str());
-  add_checks(module, kConvertFields);
+  add_checks(module, "convert", kConvertFields);
+  add_checks(module, "convert", kReadingFields);
 }
 
 }  // namespace

@@ -111,8 +111,8 @@ arrays of float64, NaN where the ledger does not have the places of a row.)")
       .def("__repr__", [](const Ledger& ledger) {
         return text("<a ledger of " + std::to_string(ledger.rows.size()) + " rows>");
       });
-  add_checks(module, kLedgerFields);
-  add_checks(module, kLedgerUpdateFields);
+  add_checks(module, "find_conflicts", kLedgerFields);
+  add_checks(module, "find_conflicts", kLedgerUpdateFields);
 }
 
 }  // namespace clearway::python

@@ -139,8 +139,7 @@ path: the file.
     another unit is refused then.
 messages: a list to which notes and warnings are appended.)DOC")
           .c_str());
-  add_checks(module, kModelFields);
-  add_checks(module, kKindOfModel);
+  add_checks(module, "read_model_points", kModelFields);
 }
 
 void add_read_model(py::module_& module) {
@@ -170,6 +169,8 @@ path: the file.
        lines_of(kModelFields) +
        R"DOC(environment_unit, messages: as read_model_points() takes them.)DOC")
           .c_str());
+  add_checks(module, "read_model", kKindOfModel);
+  add_checks(module, "read_model", kModelFields);
 }
 
 }  // namespace

@@ -143,7 +143,7 @@ The other arguments are the properties of the same names.)DOC")
         },
         field.doc);
   });
-  add_checks(module, kQueryFields);
+  add_checks(module, "Query", kQueryFields);
 }
 
 void add_searches(py::module_& module) {
@@ -190,7 +190,7 @@ progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
 stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
           .c_str());
-  add_checks(module, kSearchFields);
+  add_checks(module, "search", kSearchFields);
 }
 
 }  // namespace

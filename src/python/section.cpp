@@ -584,7 +584,8 @@ strict: treats warnings as errors: raises InputError, and writes nothing.
 input_warnings: messages of read_trajectory(), which the section keeps, and which strict counts.
 progress, message, stop: as search() takes them.)DOC")
           .c_str());
-  add_checks(module, kSectionFields);
+  add_checks(module, "find_section", kSectionFields);
+  add_checks(module, "find_section", kMachineFields<SectionOptions>);
 }
 
 void add_section_exports(py::module_& module) {

@@ -308,6 +308,8 @@ path: the file that convert() made.
 )DOC" + lines_of(kMachineFields<SessionOptions>))
                   .c_str());
   add_session_members(session);
+  add_checks(module, "Session", kMachineFields<SessionOptions>);
+  add_checks(module, "Session.search", kQuestionFields);
 }
 
 }  // namespace clearway::python

@@ -90,7 +90,7 @@ model: points, n x 3, or a Model; required where rotations change. Without it le
 )DOC" + lines_of(kSmoothFields) +
        R"DOC(progress, stop: as search() takes them.)DOC")
           .c_str());
-  add_checks(module, kSmoothFields);
+  add_checks(module, "smooth_trajectory", kSmoothFields);
 }
 
 }  // namespace clearway::python

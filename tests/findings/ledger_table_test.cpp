@@ -145,7 +145,7 @@ TEST_CASE("a table of a spreadsheet is kept byte for byte, except for the cells 
   const std::string row =
       "1,open,\"Miller, Ann\",\"says \"\"no, never\"\", twice: "
       "\"\"no\"\"\",,1.0,2,3,0,0,0,left,,0.1,";
-  for (const std::string& end : {std::string("\n"), std::string("\r\n")}) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
     for (const std::string& mark : {std::string(), std::string("\xEF\xBB\xBF")}) {
       std::string text = mark + kHeader + row + "2026-01-05,2026-01-06\n\n";
       if (end != "\n") {
@@ -200,7 +200,8 @@ TEST_CASE("a table that is none of a ledger is refused with line and column") {
       {kHeader + "1,open,,,soon,1,2,3,0,0,0,left,,,,\n", "line 2: until \"soon\""},
       {kHeader + "1,open" + cells.substr(0, cells.size() - 1) + ",more\n", "line 2: has 17 cells"},
       {kHeader + "1,open,\"cut", "a quote is not closed"},
-      {"\xFF\xFEk", "UTF-16"}};
+      {"\xFF\xFEk", "UTF-16"},
+      {"PK\x03\x04", "spreadsheets"}};
   for (const Row& row : rows) {
     CAPTURE(row.text);
     CHECK_THAT(refusal(row.text), Contains(row.words));

@@ -274,7 +274,7 @@ TEST_CASE("a floor above the model is refused, and one that leaves out much of i
   Query query = box_at(kLorry, drive(0));
   query.floor = 3.2;
   CHECK_THROWS_WITH(told_about(query),
-                    "a floor of 3.2 m leaves nothing to judge: the model reaches from 0 to 3 m of "
+                    "with a floor of 3.2 m nothing can collide: the model reaches from 0 to 3 m of "
                     "its frame");
   query.floor = 0.9;
   CHECK(told_about(query).empty());

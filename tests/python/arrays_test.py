@@ -1,10 +1,13 @@
 #!/usr/bin/python3
 """Arrays and errors of the Python module."""
 
+import inspect
+import os
 import unittest
 
 import clearway
 import numpy as np
+from clearway import _arguments
 from scene import SceneTest
 
 
@@ -218,6 +221,86 @@ class Arguments(SceneTest):
     def test_whole_numbers_of_any_type(self):
         self.search(threads=np.int64(2), memory_bytes=4e9)
         self.search(threads=2.0, strict=np.bool_(False))
+
+
+class Defaults(SceneTest):
+    """What a call does without an argument it does with the argument's default too."""
+
+    def calls(self):
+        """{name of a function: the arguments that it needs}; outputs have the name "new"."""
+        scan, site, path, model = "scan.xyz", clearway.Store("site.h5"), self.poses, self.model
+        names = ("line.csv", "track.xml", "path.txt", "outline.csv", "car.json")
+        texts = ("x,y,z\n0,0,0\n9,0,0\n",
+                 '<LandXML><Units><Metric linearUnit="meter"/></Units><Alignments>'
+                 '<Alignment name="a" staStart="0"><CoordGeom><Line><Start>0 0</Start><End>0 9</End>'
+                 '</Line></CoordGeom><Profile><ProfAlign name="p"><PVI>0 1</PVI><PVI>9 1</PVI>'
+                 "</ProfAlign></Profile></Alignment></Alignments></LandXML>",
+                 "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n",
+                 "y,z\n-1,0\n1,0\n0,2\n",
+                 '{"bodies": [{"name": "a", "model": "scan.xyz", "pivots": [1, -1]}]}')
+        for name, text in zip(names, texts):
+            (self.folder / name).write_text(text)
+        if not (self.folder / "out.h5").exists():
+            self.search(query=self.query(first_pose=True, clearance=0.5, profile=1))
+            clearway.find_section(site, path, "section.h5", -1, 1)
+            for i in (1, 2):
+                clearway.search(site, self.query(), f"part{i}.h5", shard=(i, 2))
+        result, section = clearway.Result("out.h5"), clearway.Section("section.h5")
+        return {"convert": (scan, "new"), "search": (site, self.query(), "new"),
+                "read_trajectory": ("path.txt",), "read_alignment": ("track.xml",),
+                "read_line": ("line.csv",), "read_model": (scan,), "read_model_points": (scan,),
+                "read_outline": ("outline.csv",), "read_vehicle": ("car.json", path),
+                "box_model": (3, 2, 1), "outline_model": ([[-1, 0], [1, 0], [0, 2]], -1, 1),
+                "follow": ("a", model, path), "unsearched_stretches": (path, []),
+                "smooth_trajectory": (path, 0.1), "find_conflicts": (result, path),
+                "find_shifts": (result, site, model, path), "station_table": (result, path),
+                "find_section": (site, path, "new", -1, 1), "merge": (["part1.h5", "part2.h5"], "new"),
+                "export_section": (section, "cells", "new"),
+                "export_section_outline": (section, "new"),
+                "write_report": (result, site, model, path, "new")}
+
+    def outcome(self, call, given, **named):
+        """What a call returns or raises, and the length of what it writes."""
+        self.new = self.folder / f"{self.count}.h5"
+        self.count += 1
+        try:
+            found = call(*(self.new if isinstance(each, str) and each == "new" else each
+                           for each in given), **named)
+        except Exception as error:
+            found = error
+        shown = found.tolist() if isinstance(found, np.ndarray) else repr(found)
+        size = self.new.stat().st_size if self.new.exists() else None
+        return str(shown).replace(self.new.name, ""), size
+
+    def test_every_default_may_be_given(self):
+        os.chdir(self.folder)
+        self.count = 0
+        calls = self.calls()
+        functions = {name for name in clearway.__all__ if inspect.isfunction(getattr(clearway, name))}
+        self.assertEqual(set(calls), functions)
+        for name, given in calls.items():
+            call = getattr(clearway, name)
+            expected = self.outcome(call, given)
+            self.assertNotIn("Error(", expected[0])
+            for parameter in inspect.signature(call).parameters.values():
+                if parameter.default is parameter.empty:
+                    continue
+                with self.subTest(call=name, argument=parameter.name):
+                    self.assertEqual(
+                        self.outcome(call, given, **{parameter.name: parameter.default}), expected)
+
+    def test_every_default_passes_its_check(self):
+        for name, made in ((n, getattr(clearway, n)) for n in clearway.__all__):
+            members = [(name, made)] if inspect.isfunction(made) else [
+                (name if n == "__init__" else f"{name}.{n}", m)
+                for n, m in getattr(made, "__dict__", {}).items() if hasattr(m, "__wrapped__")]
+            for call, function in members:
+                for parameter in inspect.signature(function).parameters.values():
+                    if parameter.default in (parameter.empty, None):
+                        continue
+                    with self.subTest(call=call, argument=parameter.name):
+                        check = _arguments._check_of(call, parameter.name)
+                        check(parameter.name, parameter.default)
 
 
 class Errors(SceneTest):

@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
 
 namespace clearway {
@@ -78,12 +79,13 @@ LedgerTable::LedgerTable() {
 
 LedgerTable::LedgerTable(std::string text, std::string name) : name_(std::move(name)) {
   std::string_view rest = text;
+  refuse_foreign(name_, rest);
   if (rest.starts_with("\xFF\xFE") || rest.starts_with("\xFE\xFF")) {
     throw InputError(name_ + ": is in UTF-16; save it as CSV in UTF-8");
   }
   has_mark_ = rest.starts_with(kMark);
   if (has_mark_) rest.remove_prefix(kMark.size());
-  separator_ = separator_of(rest.substr(0, rest.find('\n')));
+  separator_ = separator_of(rest.substr(0, rest.find_first_of("\r\n")));
   parse(rest);
   find_columns();
   find_forms();
@@ -103,16 +105,15 @@ void LedgerTable::parse(std::string_view text) {
       continue;
     }
     if (c == '"' && (quoted || without_blanks(cell).empty())) quoted = !quoted;
-    const bool is_end =
-        !quoted && (c == '\n' || (c == '\r' && i + 1 < text.size() && text[i + 1] == '\n'));
+    const bool is_end = !quoted && is_line_end(c);
     if (!is_end && (quoted || c != separator_)) {
       cell += c;
       continue;
     }
     line.cells.push_back(std::exchange(cell, {}));
     if (!is_end) continue;
-    line.end = c == '\r' ? "\r\n" : "\n";
-    if (c == '\r') ++i;
+    line.end = text.substr(i, line_break_bytes(text.data() + i, text.data() + text.size()));
+    i += line.end.size() - 1;
     lines_.push_back(std::exchange(line, {}));
   }
   if (quoted) throw InputError(name_ + ": a quote is not closed, so the file may be cut");

@@ -23,6 +23,32 @@ void refuse_line(const std::string& name, std::uint64_t line, const std::string&
   refuse(name, "line " + std::to_string(line) + ": " + what, remedy);
 }
 
+void refuse_foreign(const std::string& name, std::string_view first) {
+  using namespace std::string_view_literals;
+  constexpr const char* kFromGis =
+      ", which is not read; expected text. A GIS exports its points as CSV or LAS, and its lines "
+      "as "
+      "CSV or GeoJSON";
+  const struct {
+    std::string_view start;
+    const char* kind;
+    const char* advice;
+  } kinds[] = {
+      {"PK\x03\x04"sv, "a ZIP archive, as spreadsheets are",
+       "; expected text. Export the table as CSV"},
+      {"\xD0\xCF\x11\xE0"sv, "a document of an office program",
+       "; expected text. Export the table as CSV"},
+      {"\0\0\x27\x0A"sv, "a shapefile", kFromGis},
+      {"SQLite format 3\0"sv, "a GeoPackage or another SQLite database", kFromGis},
+      {"\x1F\x8B"sv, "compressed with gzip", "; expected text. Unpack it first"},
+      {"%PDF"sv, "a PDF", "; expected text. Export the table as CSV"},
+      {"\x89HDF"sv, "an HDF5 file, as stores and results are", "; expected text"},
+  };
+  for (const auto& [start, kind, advice] : kinds) {
+    if (first.starts_with(start)) refuse(name, std::string("is ") + kind + advice);
+  }
+}
+
 std::string excerpt(std::string_view text) {
   constexpr std::size_t kLongest = 40;
   std::string result = "\"";

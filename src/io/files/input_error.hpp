@@ -20,6 +20,10 @@ namespace clearway {
 [[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
                               Remedy remedy = Remedy::kNone);
 
+/// Throws InputError, with what to do, for a file of another kind that no command reads as text,
+/// such as a spreadsheet, a shapefile or a GeoPackage. first: its first 16 bytes, or fewer.
+void refuse_foreign(const std::string& name, std::string_view first);
+
 /// The start of a string from a file in double quotes, fit for a message: at most 40 characters,
 /// unprintable bytes as '?'.
 std::string excerpt(std::string_view text);

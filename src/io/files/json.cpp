@@ -12,6 +12,7 @@
 #include "core/util/format.hpp"
 #include "core/util/shortened.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_lines.hpp"
 
 namespace clearway {
 namespace {
@@ -181,16 +182,20 @@ namespace {
 
 using nlohmann::ordered_json;
 
+/// "line 3, column 7", of a byte of a text.
+std::string place_in(std::string_view text, std::size_t at) {
+  const std::string_view before = text.substr(0, at);
+  const std::size_t line_begin = before.find_last_of("\r\n") + 1;
+  return "line " + std::to_string(count_line_breaks(before) + 1) + ", column " +
+         std::to_string(at - line_begin + 1);
+}
+
 /// Throws for JSON that is nested too deeply, before anything is built from it.
 void check_nesting(std::string_view text) {
-  std::size_t depth = 0, line = 1, line_begin = 0;
+  std::size_t depth = 0;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
-    if (c == '\n') {
-      ++line;
-      line_begin = i + 1;
-    }
     if (in_string) {
       if (c == '\\') ++i;
       if (c == '"') in_string = false;
@@ -198,8 +203,7 @@ void check_nesting(std::string_view text) {
       in_string = true;
     } else if (c == '[' || c == '{') {
       if (++depth > kMostJsonNesting) {
-        throw JsonError("line " + std::to_string(line) + ", column " +
-                        std::to_string(i - line_begin + 1) +
+        throw JsonError(place_in(text, i) +
                         ": lists and objects are nested too deep, expected at most " +
                         std::to_string(kMostJsonNesting) + " levels");
       }
@@ -220,10 +224,6 @@ class SyntaxFault {
       : text_(text), at_(std::min(std::max<std::size_t>(read, 1) - 1, text.size())) {
     bool escaped = false;
     for (std::size_t i = 0; i < at_; ++i) {
-      if (text_[i] == '\n') {
-        ++line_;
-        line_begin_ = i + 1;
-      }
       if (escaped) {
         escaped = false;
       } else if (in_string_ && text_[i] == '\\') {
@@ -245,8 +245,7 @@ class SyntaxFault {
   /// within: what was open; after_name: whether the last thing that was taken is a name in an
   /// object; is_over: whether the whole value was taken before.
   std::string words(Within within, bool after_name, bool is_over) const {
-    return "parse error at line " + std::to_string(line_) + ", column " +
-           std::to_string(at_ - line_begin_ + 1) + ": " + reason(within, after_name, is_over);
+    return "parse error at " + place_in(text_, at_) + ": " + reason(within, after_name, is_over);
   }
 
  private:
@@ -318,7 +317,6 @@ class SyntaxFault {
 
   std::string_view text_;
   std::size_t at_;  ///< byte at which the text was refused
-  std::size_t line_ = 1, line_begin_ = 0;
   bool in_string_ = false, closes_string_ = false;
   std::size_t escape_ = 0;           ///< place of the last backslash in a string
   std::size_t token_ = 0, end_ = 0;  ///< the string, word or number there
@@ -441,6 +439,7 @@ std::string list_of(const std::vector<std::string>& names) {
 }  // namespace
 
 KeyReader KeyReader::parse(const std::filesystem::path& file, const std::string& text) {
+  refuse_foreign(file.string(), text);
   try {
     auto document = std::make_shared<const ordered_json>(parse_json(text));
     if (!document->is_object()) clearway::refuse(file.string(), "expected one JSON object");

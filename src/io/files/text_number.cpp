@@ -14,6 +14,15 @@ bool parse_extreme_number(const char* begin, const char* end, double& value) {
   return std::isfinite(value);
 }
 
+bool parse_quoted_number(const char*& at, const char* end, double& value) {
+  const char* within = skip_blanks(at + 1, end);
+  if (within == end || *within == '"' || !parse_number(within, end, value)) return false;
+  within = skip_blanks(within, end);
+  if (within == end || *within != '"') return false;
+  at = within + 1;
+  return true;
+}
+
 std::optional<std::size_t> parse_number_line(std::string_view line, std::span<double> out) {
   const char* end = line.data() + line.size();
   const char* at = skip_blanks(line.data(), end);

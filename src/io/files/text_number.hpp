@@ -22,9 +22,14 @@ inline const char* skip_blanks(const char* at, const char* end) {
 /// 0 or the nearest number; one that is too large is refused (false).
 bool parse_extreme_number(const char* begin, const char* end, double& value);
 
-/// Parses the number that starts at `at` (including nan, inf and a leading +) and moves `at` past
-/// it. Returns false where there is none. The caller checks what follows.
+/// Parses a number in double quotes, as some programs write the cells of a table, and moves `at`
+/// behind the second quote.
+bool parse_quoted_number(const char*& at, const char* end, double& value);
+
+/// Parses the number that starts at `at` (including nan, inf, a leading + and double quotes around
+/// it) and moves `at` past it. Returns false where there is none. The caller checks what follows.
 inline bool parse_number(const char*& at, const char* end, double& value) {
+  if (at != end && *at == '"') return parse_quoted_number(at, end, value);
   const char* start = at;
   if (start != end && *start == '+' && end - start > 1 && start[1] != '-') ++start;
   const auto [stop, error] = std::from_chars(start, end, value);
@@ -62,7 +67,7 @@ inline std::optional<std::uint64_t> parse_count(std::string_view word) {
   return value;
 }
 
-/// Parses a whole field, apart from blanks around it, as a number.
+/// Parses a whole field, apart from blanks and double quotes around it, as a number.
 std::optional<double> parse_whole_number(std::string_view field);
 
 /// A length given as text: "0.1", "10cm", "4 in", "0.5 us-ft".

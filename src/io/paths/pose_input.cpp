@@ -68,6 +68,13 @@ bool is_rotation_first(std::span<const double> numbers) {
 
 }  // namespace
 
+std::string objection_to_angle(const char* name, double value, double most, const char* format) {
+  if (std::abs(value) <= most) return {};  // false for NaN
+  return std::string(name) + " " + format_digits(value, 9) + " is no angle in radians up to " +
+         format_digits(most, 9) +
+         (std::isfinite(value) ? std::string("; ") + format + " has radians, not degrees" : "");
+}
+
 Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {
   if (!all_finite(numbers)) return {"expected finite numbers"};
   for (std::size_t row = 0; row < 3; ++row) {

@@ -28,6 +28,10 @@ struct Objection {
   Remedy remedy = Remedy::kNone;
 };
 
+/// Why a number of a file is no angle in radians; empty where it is one. most: the largest angle
+/// either way. format: the format's name, for the message.
+std::string objection_to_angle(const char* name, double value, double most, const char* format);
+
 /// Makes a pose of a matrix. numbers: 12 or 16, a row-major 3x4 or 4x4 matrix; the last row of a
 /// 4x4 must be 0 0 0 1. It must be rigid within kRigidTolerance or, with allow_non_rigid,
 /// invertible.

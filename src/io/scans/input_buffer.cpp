@@ -7,6 +7,7 @@
 
 #include "clearway/error.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_lines.hpp"
 
 namespace clearway {
 namespace {
@@ -24,7 +25,7 @@ bool is_utf16(std::string_view first) {
 /// Whether a line such as "sep=;" begins here. first: its first six bytes, or fewer.
 bool is_separator_line(std::string_view first) {
   return first.size() == 6 && (first.starts_with("sep=") || first.starts_with("SEP=")) &&
-         (first[5] == '\n' || first[5] == '\r');
+         is_line_end(first[5]);
 }
 
 }  // namespace
@@ -91,32 +92,31 @@ bool InputBuffer::skip(std::uint64_t count) {
 }
 
 bool InputBuffer::next_line(std::string_view& line) {
-  std::size_t searched = 0;
-  const std::byte* found = nullptr;
+  const char* text = nullptr;
+  std::size_t length = 0, available = 0;
   for (;;) {
-    const std::size_t available = end_ - begin_;
-    const std::byte* text = buffer_.get() + begin_;
-    if (available > searched) {
-      found =
-          static_cast<const std::byte*>(std::memchr(text + searched, '\n', available - searched));
-    }
-    if (found || available > kLongestLine) break;
-    searched = available;
-    if (!fill()) break;
+    text = reinterpret_cast<const char*>(buffer_.get() + begin_);
+    available = end_ - begin_;
+    length = static_cast<std::size_t>(find_line_end(text + length, text + available) - text);
+    // A CR at the end of what is loaded may be the first half of a CR LF.
+    const bool is_whole =
+        length + 1 < available || (length + 1 == available && text[length] == '\n');
+    if (is_whole || length > kLongestLine || !fill()) break;
   }
-  const char* text = reinterpret_cast<const char*>(buffer_.get() + begin_);
-  const std::size_t length =
-      found ? static_cast<std::size_t>(reinterpret_cast<const char*>(found) - text) : end_ - begin_;
-  if (!found && length == 0) return false;
+  if (available == 0) return false;
   ++line_;
   if (length > kLongestLine) {
     refuse_line(name(), line_, "is longer than 65536 bytes; expected lines of text");
   }
-  line_terminated_ = found != nullptr;
-  begin_ += length + (found ? 1 : 0);
+  break_bytes_ = line_break_bytes(text + length, text + available);
+  lone_cr_ = lone_cr_ || (break_bytes_ == 1 && text[length] == '\r');
+  begin_ += length + break_bytes_;
   line = {text, length};
-  if (line.ends_with('\r')) line.remove_suffix(1);
   return true;
+}
+
+void InputBuffer::end_text() {
+  if (lone_cr_ && break_bytes_ == 2) --begin_;
 }
 
 void InputBuffer::begin_text() {
@@ -125,11 +125,9 @@ void InputBuffer::begin_text() {
     const auto bytes = peek(count);
     return std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   };
-  const std::string_view first = peek_text(4);
-  if (first == "PK\x03\x04") {
-    refuse(name(), "is a ZIP archive, as spreadsheets are; expected text. Export the table as CSV");
-  }
-  if (is_utf16(first)) {
+  const std::string_view first = peek_text(16);
+  refuse_foreign(name(), first);
+  if (is_utf16(first.substr(0, 4))) {
     refuse(name(),
            "is text in UTF-16, which some programs call Unicode; expected UTF-8. Save it as UTF-8 "
            "or as CSV");
@@ -148,7 +146,7 @@ void InputBuffer::return_to(const Mark& mark) {
   begin_ = end_ = 0;
   loaded_ = mark.position;
   line_ = mark.line;
-  line_terminated_ = true;
+  break_bytes_ = 1;
 }
 
 }  // namespace clearway

@@ -58,17 +58,20 @@ class InputBuffer {
   /// Position of the end of the file. Valid once take() or skip() has met it.
   std::uint64_t end_position() const { return loaded_; }
 
-  /// Consumes the next line, without its LF or CR LF; `line` stays valid until the next call.
+  /// Consumes the next line, without its LF, CR LF or CR; `line` stays valid until the next call.
   /// Returns false at the end. Throws InputError for a line longer than kLongestLine.
   bool next_line(std::string_view& line);
   /// Consumes what programs put before the first line of a text: the byte order mark of UTF-8, and
   /// the line "sep=;" by which spreadsheets name the separator. Called at the start of the file.
-  /// Throws InputError for UTF-16 and for a ZIP archive, such as a spreadsheet.
+  /// Throws InputError for UTF-16 and for what is no text, as refuse_foreign() does.
   void begin_text();
+  /// Called after the last line of a text that binary data follow. Where lines end with CR alone, a
+  /// LF behind the CR of the last one is the first byte of the data.
+  void end_text();
   /// Number of the last returned line, from 1.
   std::uint64_t line() const { return line_; }
   /// Whether a line break followed the last returned line (the last line of a file may lack it).
-  bool line_terminated() const { return line_terminated_; }
+  bool line_terminated() const { return break_bytes_ > 0; }
 
   Mark mark() const { return {position(), line_}; }
   /// Goes back to a mark. Throws ResourceError where the input cannot seek.
@@ -84,7 +87,8 @@ class InputBuffer {
   std::size_t end_ = 0;       ///< index after the last byte loaded
   std::uint64_t loaded_ = 0;  ///< position of end_ in the file
   std::uint64_t line_ = 0;
-  bool line_terminated_ = true;
+  std::size_t break_bytes_ = 1;  ///< length of the line break behind the last returned line
+  bool lone_cr_ = false;         ///< whether a line ended with CR alone
 };
 
 }  // namespace clearway

@@ -24,6 +24,7 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
   auto format = format_of_content(first);
   if (!format) format = format_of_name(path);
   if (!format) {
+    refuse_foreign(file.name(), {reinterpret_cast<const char*>(first.data()), first.size()});
     refuse(file.name(), "unknown format of points; expected the ending " + sure_endings() +
                             ", or txt or csv for text");
   }

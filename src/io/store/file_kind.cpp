@@ -11,6 +11,7 @@
 #include "clearway/error.hpp"
 #include "io/files/file.hpp"
 #include "io/files/hdf5.hpp"
+#include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
 #include "io/result/journal.hpp"
 #include "io/scans/point_formats.hpp"
@@ -62,10 +63,7 @@ bool names_poses(std::string_view line) {
 FileDescription describe_text(std::string_view text) {
   std::array<double, 16> numbers{};
   while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.ends_with('\r')) line.remove_suffix(1);
+    const std::string_view line = take_line(text);
     if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
     const auto count = parse_number_line(line, numbers);
     if (!count || *count > numbers.size()) {

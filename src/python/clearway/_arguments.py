@@ -1,10 +1,11 @@
-"""Arguments of the public calls: each is checked by its name before the compiled part gets it.
+"""Arguments of the public calls: each is checked before the compiled part gets it.
 
 The compiled part describes a call that does not fit by listing the C++ types of all parameters,
 which names no culprit. So every public call, constructor and property is wrapped here: it takes
 arguments as a Python function of its signature does, converts numbers of any type, and says which
-argument is wrong. A parameter of one name means the same in every call, so that one table serves
-them all. What remains to be said of values and arrays, the library says.
+argument is wrong. The compiled part describes for each call how the parameters are checked that are
+members of its options; every other parameter of one name means the same in every call, so that one
+table serves them all. What remains to be said of values and arrays, the library says.
 """
 
 import difflib
@@ -205,8 +206,10 @@ def _described(kind, *limits):
 _messages = _each(_kind(_clearway.Message))
 _model = _of_type("ArrayLike | Model")(lambda _name, value: value)
 
+_DESCRIBED = {call: {name: _described(*check) for name, check in checks.items()}
+              for call, checks in _clearway._checks.items()}
 _CHECKS = {
-    **{name: _described(*check) for name, check in _clearway._checks.items()},
+    **{name: check for checks in _DESCRIBED.values() for name, check in checks.items()},
     **dict.fromkeys(("step", "rail_distance", "length", "width", "corner_radius", "track"),
                     _above_0),
     "environment_unit": _or_name(_above_0),
@@ -256,7 +259,8 @@ _OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _an
 
 
 def _check_of(call, name):
-    return _OF_CALL.get((call, name)) or _CHECKS.get(name, _anything)
+    return (_OF_CALL.get((call, name)) or _DESCRIBED.get(call, {}).get(name)
+            or _CHECKS.get(name, _anything))
 
 
 # What the command line calls an argument that is named otherwise here.
@@ -304,9 +308,9 @@ def checked(call, function):
     return wrapped
 
 
-def _checked_property(name, compiled):
+def _checked_property(owner, name, compiled):
     def assign(self, value):
-        compiled.fset(self, _check_of("", name)(name, value))
+        compiled.fset(self, _check_of(owner, name)(name, value))
     return property(compiled.fget, assign, doc=compiled.__doc__)
 
 
@@ -315,7 +319,7 @@ def check_class(made):
     for name, member in list(vars(made).items()):
         if isinstance(member, property):
             if member.fset is not None:
-                setattr(made, name, _checked_property(name, member))
+                setattr(made, name, _checked_property(made.__name__, name, member))
         elif hasattr(member, "__objclass__"):
             continue  # of a class whose objects only the module makes
         elif name == "__init__" or (callable(member) and not name.startswith("_")):

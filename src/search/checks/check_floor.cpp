@@ -48,8 +48,8 @@ void check_height(const MovingBody& body, double radius, LengthUnit unit, double
   const std::string range = what + " reaches from " + format_digits(box.lo.z, 6) + " to " +
                             format_digits(box.hi.z, 6) + " " + unit_name(unit) + " of its frame";
   if (*body.floor >= box.hi.z + radius) {
-    throw UsageError(who(body) + "a floor of " + format_digits(*body.floor, 6) + " " +
-                     unit_name(unit) + " leaves nothing to judge: " + range);
+    throw UsageError(who(body) + "with a floor of " + format_digits(*body.floor, 6) + " " +
+                     unit_name(unit) + " nothing can collide: " + range);
   }
   const double cut = *body.floor - box.lo.z;
   if (cut <= std::max(kHigh * metre, kShare * (box.hi.z - box.lo.z))) return;

@@ -14,6 +14,8 @@ TEST_CASE("an outline is read as y and z, or as one half of a symmetric one") {
   ScratchFolder scratch;
   const std::vector<OutlinePoint> triangle{{-1, 0}, {1, 0}, {0, 2}};
   CHECK(read_outline(scratch.write("a.csv", "y,z\n-1,0\n1,0\n0,2\n")) == triangle);
+  CHECK(read_outline(scratch.write("a.csv", "\"y\",\"z\"\r\"-1\",\"0\"\r\"1\",\"0\"\r0,\"2\"\r")) ==
+        triangle);
   CHECK(read_outline(scratch.write("b.txt", "-1 0\n\n1 0\n0 2\n-1 0\n")) == triangle);
   CHECK(read_outline(scratch.write("c.csv", "y;z\r\n-1000;0\r\n1000;0\r\n0;2000\r\n"),
                      {.unit = kMetresPerMillimetre}) == triangle);

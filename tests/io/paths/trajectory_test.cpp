@@ -183,5 +183,7 @@ TEST_CASE("malformed trajectories are refused with their line") {
   check_says(refusal_of_text("1403715524907143168,0,0,0,1,0,0,0\n"), "the format can be tum");
   check_says(refusal_of_text(std::string(70'000, '1')), "65536");
   check_says(refusal_of_text("PK\x03\x04..."), "ZIP archive ... as CSV");
+  check_says(refusal_of_text(std::string("\0\0\x27\x0A\0\0", 6)), "is a shapefile");
+  check_says(refusal_of_text("\x89HDF\r\n"), "as stores and results are");
   check_says(refusal_of_text("\xFE\xFF" + std::string("\0001\0 ", 4)), "UTF-16");
 }

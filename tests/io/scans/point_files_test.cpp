@@ -41,6 +41,9 @@ TEST_CASE("what is not read is refused by the name of its format, with advice") 
   check_says(refusal("d.las", std::string(500, ' ')), "LASF");
   check_says(refusal("c.ply", "1 2 3\n"), "`ply`");
   check_says(refusal("c.unknown", "1 2 3\n"), "unknown format");
+  check_says(refusal("c.shp", std::string("\0\0\x27\x0A\0\0", 6)),
+             "is a shapefile ... as CSV or LAS");
+  check_says(refusal("c.gpkg", std::string("SQLite format 3\0", 16)), "is a GeoPackage");
 }
 
 TEST_CASE("PCD is read by its content too, 3DTK scans by their name") {

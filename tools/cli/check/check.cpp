@@ -228,6 +228,13 @@ class Check {
   /// Refuses files in the wrong place. Where input_roles.hpp names options of single commands,
   /// check names its own.
   void check_roles(const RunOptions& run) const {
+    for (const fs::path& input : input_files()) {
+      std::error_code unknown;
+      if (!fs::is_other(fs::status(input, unknown))) continue;
+      throw UsageError(input.string() +
+                       ": is a pipe or device; expected a file, because each step has to read it "
+                       "again. Write it into a file first");
+    }
     if (run.vehicle.empty() && !names_box(run.model)) {
       refuse_kinds(run.model, {FileKind::kStore},
                    "a model (points of the vehicle in its own frame)",

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 #include "core/geometry/model_tree.hpp"
@@ -12,7 +13,7 @@ namespace clearway {
 
 /// Finds the nearest model points of all nodes of a brick together. Model points that are not the
 /// nearest of any position within a part of the brick are left out for all of its nodes at once.
-/// Allocates nothing, but is itself some 100 kB large.
+/// Allocates some 100 kB.
 class BrickNearest {
  public:
   /// tree: not empty; it must outlive this object.
@@ -46,7 +47,9 @@ class BrickNearest {
   BrickLattice lattice_{};
   BrickNodes nodes_;
   std::uint32_t near_ = 0;  ///< a point near the last place, from which searches begin
-  std::array<std::array<Candidate, kMostGathered>, kLevels> kept_;
+  using Gathered = std::array<Candidate, kMostGathered>;
+  /// The candidates of the part at work on each level; on the heap, as stacks may be small.
+  std::unique_ptr<Gathered[]> kept_ = std::make_unique_for_overwrite<Gathered[]>(kLevels);
 };
 
 }  // namespace clearway

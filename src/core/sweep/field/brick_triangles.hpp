@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 
 #include "core/geometry/model_tree.hpp"
 #include "core/geometry/triangle_packet.hpp"
@@ -11,7 +12,7 @@
 namespace clearway {
 
 /// Finds the nearest triangles of all nodes of a brick together, as BrickNearest does with points.
-/// Allocates nothing, but is itself some 200 kB large.
+/// Allocates some 200 kB.
 class BrickTriangles {
  public:
   /// tree: not empty; it must outlive this object.
@@ -53,7 +54,8 @@ class BrickTriangles {
   BrickLattice lattice_{};
   BrickNodes nodes_;
   std::uint32_t near_ = 0;  ///< a triangle near the last place, from which searches begin
-  std::array<Candidates, kLevels> kept_;
+  /// The candidates of the part at work on each level; on the heap, as stacks may be small.
+  std::unique_ptr<Candidates[]> kept_ = std::make_unique_for_overwrite<Candidates[]>(kLevels);
 };
 
 }  // namespace clearway

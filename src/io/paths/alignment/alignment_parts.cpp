@@ -46,6 +46,8 @@ class PlanReader {
   /// Adds the element of a node, unless it has no length.
   void add(pugi::xml_node node) {
     const std::string_view kind = kind_of(node);
+    const bool is_read = kind == "Line" || kind == "Curve" || kind == "Spiral";
+    if (is_read && is_empty(node)) return;
     PlanElement element;
     if (kind == "Line") {
       element = line(node);
@@ -89,6 +91,13 @@ class PlanReader {
     return {.start = place(node, "Start"), .end = place(node, "End")};
   }
 
+  /// Whether an element that declares no length ends where it starts.
+  bool is_empty(pugi::xml_node node) const {
+    if (xml_.attribute(node, "length")) return false;
+    const PlanElement element = between_ends(node);
+    return std::abs(element.end - element.start) < kSameStation;
+  }
+
   PlanElement line(pugi::xml_node node) const {
     PlanElement element = between_ends(node);
     element.length = xml_.length(node, "length").value_or(std::abs(element.end - element.start));
@@ -122,8 +131,8 @@ class PlanReader {
     element.first_curvature = element.last_curvature = sense / radius;
     if (element.start == element.end && !(length && *length < kSameStation)) {
       xml_.refuse_at(node,
-                     "ends where it starts; expected less than a full circle, as closed curves "
-                     "are not read");
+                     "ends where it starts, but has a length; expected less than a full circle, as "
+                     "closed curves are not read");
     }
     element.length = length ? *length : radius * angle_about(center, element, sense);
     check_turn(node, element);

@@ -9,6 +9,7 @@
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_lines.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -40,15 +41,15 @@ std::vector<char> bytes_of(const std::filesystem::path& path) {
   }
   std::vector<char> text(bytes);
   if (bytes > 0) file.read_at(0, std::as_writable_bytes(std::span(text)));
+  refuse_foreign(file.name(), {text.data(), text.size()});
   return text;
 }
 
 /// "line 7", by counting the line breaks before an offset of the file.
 std::string line_at(const std::filesystem::path& path, std::uint64_t offset) {
   const std::vector<char> text = bytes_of(path);
-  const auto end =
-      text.begin() + static_cast<std::ptrdiff_t>(std::min<std::uint64_t>(offset, text.size()));
-  return "line " + std::to_string(1 + std::count(text.begin(), end, '\n'));
+  const std::size_t before = std::min<std::uint64_t>(offset, text.size());
+  return "line " + std::to_string(1 + count_line_breaks({text.data(), before}));
 }
 
 bool is_utf8(std::string_view text) {

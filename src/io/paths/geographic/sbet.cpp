@@ -31,12 +31,6 @@ Record record_of(std::span<const std::byte> bytes) {
   return {n[0], n[1], n[2], n[3], n[7], n[8], n[9], n[10]};
 }
 
-std::string objection_to_angle(const char* name, double value, double most) {
-  if (std::abs(value) <= most) return {};  // false for NaN
-  return std::string(name) + " " + format_digits(value, 9) + " is no angle in radians up to " +
-         format_digits(most, 9) + (std::isfinite(value) ? "; SBET has radians, not degrees" : "");
-}
-
 /// Why a record is not a pose; empty where it is one.
 std::string objection_to(const Record& record) {
   constexpr double kTurn = 2 * std::numbers::pi + 1e-6;
@@ -50,9 +44,8 @@ std::string objection_to(const Record& record) {
                 {"heading", record.heading, kTurn},
                 {"wander angle", record.wander, kTurn}};
   for (const auto& angle : angles) {
-    if (auto text = objection_to_angle(angle.name, angle.value, angle.most); !text.empty()) {
-      return text;
-    }
+    auto text = objection_to_angle(angle.name, angle.value, angle.most, "SBET");
+    if (!text.empty()) return text;
   }
   if (!std::isfinite(record.time)) return "expected a finite time";
   if (!(std::abs(record.altitude) <= kHighest)) {

@@ -201,11 +201,7 @@ class LineTable {
   }
 
   double number_in(std::size_t column, const char* what) const {
-    std::string_view field = fields_[column];
-    constexpr std::string_view kAround = " \t\"";
-    const std::size_t first = std::min(field.find_first_not_of(kAround), field.size());
-    field = field.substr(first);
-    field = field.substr(0, field.find_last_not_of(kAround) + 1);
+    const std::string_view field = fields_[column];
     const auto number = parse_whole_number(field);
     if (!number || !std::isfinite(*number)) {
       refuse_decimal_commas();

@@ -13,6 +13,7 @@
 
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/paths/text/pose_rows.hpp"
@@ -81,7 +82,7 @@ class TextTrajectory {
     const auto read_one = [&](std::size_t i) {
       if (!good) return;
       const std::string_view block = blocks.read(i, rooms.local());
-      const auto lines = static_cast<std::size_t>(std::ranges::count(block, '\n')) + 1;
+      const auto lines = count_line_breaks(block) + 1;
       PoseRows part = rows_->for_lines(lines);
       if (!add_lines(block, part)) good = false;
       parts[i] = std::move(part);
@@ -102,7 +103,7 @@ class TextTrajectory {
       last = line = without_leading_blanks(line);
       return is_text_comment(line) || rows.add(line).text.empty();
     });
-    return good && (block.ends_with('\n') || !last.ends_with('.'));
+    return good && (is_line_end(block.back()) || !last.ends_with('.'));
   }
 
   bool reads_names() const {

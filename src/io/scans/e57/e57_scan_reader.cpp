@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
+#include "io/paths/pose_input.hpp"
 #include "io/scans/e57/e57_file.hpp"
 
 namespace clearway {
@@ -380,6 +382,14 @@ void E57ScanReader::check_state(E57Place state, std::size_t count) const {
                   "; expected 0, 1 or 2");
 }
 
+void E57ScanReader::check_angle(const char* name, double value, double most, std::size_t i) const {
+  constexpr double kRounding = 1e-3;  // radians; of angles that are stored as scaled integers
+  if (!(std::abs(value) > most + kRounding)) return;
+  refuse_byte(pages_.name(), scan_.file_offset,
+              scan_.name() + ", record " + std::to_string(next_ + i) +
+                  " (counted from 0): " + objection_to_angle(name, value, most, "E57"));
+}
+
 bool E57ScanReader::is_valid(E57Place state, std::size_t i) const {
   return !cursors_[state] || columns_[state][i] == 0;
 }
@@ -389,11 +399,13 @@ Vec3 E57ScanReader::cartesian(std::size_t i) const {
 }
 
 /// The position of a record with spherical coordinates: azimuth from x towards y, elevation from
-/// the x-y plane towards z, in radians.
+/// the x-y plane towards z, in radians. Throws InputError for an angle beyond its range.
 Vec3 E57ScanReader::spherical(std::size_t i) const {
   const double range = columns_[kE57Range][i];
   const double azimuth = columns_[kE57Azimuth][i];
   const double elevation = columns_[kE57Elevation][i];
+  check_angle("azimuth", azimuth, 2 * std::numbers::pi, i);
+  check_angle("elevation", elevation, std::numbers::pi / 2, i);
   const double in_plane = range * std::cos(elevation);
   return {in_plane * std::cos(azimuth), in_plane * std::sin(azimuth), range * std::sin(elevation)};
 }

@@ -134,6 +134,7 @@ class E57ScanReader {
   void decode(std::size_t count);
   bool is_valid(E57Place state, std::size_t i) const;
   void check_state(E57Place state, std::size_t count) const;
+  void check_angle(const char* name, double value, double most, std::size_t i) const;
   void place_points(std::span<Vec3> out, std::size_t first, std::vector<std::uint32_t>& absent);
   Vec3 cartesian(std::size_t i) const;
   Vec3 spherical(std::size_t i) const;

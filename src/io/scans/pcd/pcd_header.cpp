@@ -34,6 +34,7 @@ class HeaderParser {
     do {
       next();
     } while (read_entry());
+    input_.end_text();
     check_fields();
     check_counts();
     find_coordinates();

@@ -49,6 +49,7 @@ class HeaderParser {
         fail(excerpt(words[0]) + "; expected element, property, comment, obj_info or end_header");
       }
     }
+    input_.end_text();
     check_elements();
     find_vertices();
     return std::move(header_);

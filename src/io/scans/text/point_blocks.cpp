@@ -34,12 +34,14 @@ std::string_view LineBlocks::read(std::size_t block, std::vector<char>& room) co
     input_.read_at(loaded, std::as_writable_bytes(std::span(room).subspan(loaded - from)));
     loaded = to;
   };
-  /// Finds the end of the line to which the byte before `at` belongs.
+  /// Finds the end of the line to which the byte before `at` belongs; npos where it is not loaded.
   const auto line_end = [&](std::uint64_t at) {
-    const auto found =
-        std::find(room.begin() + static_cast<std::ptrdiff_t>(at - 1 - from), room.end(), '\n');
-    return found == room.end() ? std::string_view::npos
-                               : static_cast<std::size_t>(found - room.begin()) + 1;
+    const char* const loaded_end = room.data() + room.size();
+    const char* const stop = find_line_end(room.data() + (at - 1 - from), loaded_end);
+    const std::size_t bytes = line_break_bytes(stop, loaded_end);
+    const bool is_half = bytes == 1 && *stop == '\r' && stop + 1 == loaded_end && loaded < end_;
+    return bytes == 0 || is_half ? std::string_view::npos
+                                 : static_cast<std::size_t>(stop - room.data()) + bytes;
   };
   load_to(std::min(end_, last + kUsualLine));
   std::size_t end = line_end(last);
@@ -97,7 +99,7 @@ std::uint64_t most_points_in_rest(const InputBuffer& input) {
 
 bool PointLine::parse(std::string_view line, Vec3& point) {
   if (columns_ == kFirstThree) return parse_point(line, point);
-  split_fields(line, separator_, fields_);
+  split_quoted_fields(line, separator_, fields_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (columns_[axis] >= fields_.size()) return false;
     const auto value = parse_whole_number(fields_[columns_[axis]]);
@@ -139,7 +141,7 @@ char separator_of(std::string_view line) {
 
 std::size_t count_fields(std::string_view line) {
   std::vector<std::string_view> fields;
-  split_fields(line, separator_of(line), fields);
+  split_quoted_fields(line, separator_of(line), fields);
   return fields.size();
 }
 
@@ -164,9 +166,9 @@ std::optional<std::uint64_t> PointBlocks::read(InputBuffer& input, const ParseBl
     const std::string_view block = blocks.read(i, rooms.local());
     Part& part = parts[i];
     part.bytes = block.size();
-    part.lines = static_cast<std::uint64_t>(std::ranges::count(block, '\n'));
+    part.lines = count_line_breaks(block);
     part.points.reserve(part.lines);
-    part.good = (block.empty() || block.ends_with('\n')) && parse(block, part.points);
+    part.good = (block.empty() || is_line_end(block.back())) && parse(block, part.points);
   };
   // Reading happens in a stage of a pipeline, so a thread that waits here must not begin another
   // stage.

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <functional>
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "clearway/vec3.hpp"
+#include "io/files/text_lines.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/text/table_header.hpp"
 
@@ -41,15 +41,8 @@ class LineBlocks {
 template <typename Use>
 bool each_line(std::string_view block, Use use) {
   while (!block.empty()) {
-    const auto* const found =
-        static_cast<const char*>(std::memchr(block.data(), '\n', block.size()));
-    const std::size_t length =
-        found ? static_cast<std::size_t>(found - block.data()) : block.size();
-    if (length > InputBuffer::kLongestLine) return false;
-    std::string_view line = block.substr(0, length);
-    if (line.ends_with('\r')) line.remove_suffix(1);
-    if (!use(line)) return false;
-    block.remove_prefix(length + (found ? 1 : 0));
+    const std::string_view line = take_line(block);
+    if (line.size() > InputBuffer::kLongestLine || !use(line)) return false;
   }
   return true;
 }

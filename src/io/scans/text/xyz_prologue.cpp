@@ -119,7 +119,8 @@ void LookAlike::add(std::string_view line) {
     const char* const start = at;
     if (!parse_number(at, end, row.numbers[row.count])) break;
     if (row.count < kMostForms) {
-      row.counting[row.count] = is_counting(start, at);
+      const bool quoted = *start == '"';
+      row.counting[row.count] = is_counting(start + quoted, at - quoted);
       row.decimals[row.count] = decimals_of(start, at);
     }
     ++row.count;
@@ -414,7 +415,7 @@ class PrologueReader {
   /// header.
   static bool has_number(std::string_view line, char separator, const CoordinateColumns& columns) {
     std::vector<std::string_view> fields;
-    split_fields(line, separator, fields);
+    split_quoted_fields(line, separator, fields);
     return std::any_of(columns.begin(), columns.end(), [&](std::size_t column) {
       return column < fields.size() && parse_whole_number(fields[column]);
     });

@@ -305,9 +305,11 @@ namespace {
 
 constexpr const char* kHeader = "first,x,y,z";
 
+/// A field without the blanks and quotes around it.
 std::string_view trimmed(std::string_view field) {
-  while (!field.empty() && is_blank(field.front())) field.remove_prefix(1);
-  while (!field.empty() && is_blank(field.back())) field.remove_suffix(1);
+  const auto is_around = [](char c) { return is_blank(c) || c == '"'; };
+  while (!field.empty() && is_around(field.front())) field.remove_prefix(1);
+  while (!field.empty() && is_around(field.back())) field.remove_suffix(1);
   return field;
 }
 

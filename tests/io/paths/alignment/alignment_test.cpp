@@ -229,6 +229,22 @@ TEST_CASE("what is no line, arc or clothoid is refused by name") {
              "360. ... closed curves");
 }
 
+TEST_CASE("an element without a length that ends where it starts is left out") {
+  const LandFile file;
+  const MadePath without = made_of(file);
+  for (const std::string kind : {"Line", "Curve rot=\"cw\"", "Curve rot=\"ccw\" radius=\"50\"",
+                                 "Spiral spiType=\"clothoid\""}) {
+    LandFile more;
+    const std::string name = kind.substr(0, kind.find(' '));
+    // The end is not quite the start, which must not become a full circle either.
+    more.curve = "<" + kind + "><Start>0 100</Start><Center>50 100</Center><End>0 99.9999999999" +
+                 "</End></" + name + ">" + file.curve;
+    const MadePath made = made_of(more);
+    check_equal(made.codes(), without.codes());
+    CHECK(made.poses == without.poses);
+  }
+}
+
 TEST_CASE("a clothoid between two radii meets its ends") {
   // A right curve of 200 m that becomes one of 60 m over 70 m; the end is known in 25 digits.
   LandFile file;

@@ -104,6 +104,7 @@ TEST_CASE("names of columns decide, not their order or form") {
         std::string("\xEF\xBB\xBF# a survey\n\n  \"X [m]\" , \"Y [m]\" , Z_m, note\n0,0,1,a\n"
                     "// half\n10,0,2,\"b, c\"\n20,0,3,\r\n"),
         std::string("# x y z\n0 0 1\n10 0 2\n20 0 3"),
+        std::string("\"x\",\"y\",\"z\"\r\"0\",\"0\",\"1\"\r\"10\",\" 0 \",\"2\"\r20,0,3\r"),
         std::string("id,Easting,Northing,Elevation\nA1,0,0,1\nA2,10,0,2\nA3,20,0,3\n")}) {
     CAPTURE(text);
     const MadePath made = made_of(text);
@@ -120,6 +121,8 @@ TEST_CASE("names of columns decide, not their order or form") {
   check_says(refusal_by("x,y,station,chainage\n1,2,3,4\n"), "two columns of a station");
   check_says(refusal_by("lon,lat,z\n9,48,1\n"), "angles and no lengths ... transform");
   check_says(refusal_by("<kml>\n</kml>\n"), "is XML");
+  check_says(refusal_by(std::string("\0\0\x27\x0A\0\0", 6)), "shapefile ... as CSV or GeoJSON");
+  check_says(refusal_by(std::string("SQLite format 3\0", 16)), "GeoPackage ... as CSV or GeoJSON");
 }
 
 TEST_CASE("columns of a line that are not read are listed, and doubted by their names") {

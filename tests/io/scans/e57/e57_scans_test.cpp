@@ -97,6 +97,29 @@ TEST_CASE("spherical coordinates are range, azimuth from x to y, elevation from 
   check_equal(all.absent, {3});
 }
 
+TEST_CASE("angles beyond their range are refused, unless their record is invalid") {
+  const auto file_of = [](double azimuth, double elevation, int state) {
+    E57Bytes file;
+    file.scans.emplace_back();
+    file.scans[0].fields = {E57Bytes::float64("sphericalRange", {2, 2}),
+                            E57Bytes::float64("sphericalAzimuth", {0, azimuth}),
+                            E57Bytes::float64("sphericalElevation", {0, elevation}),
+                            E57Bytes::integer("sphericalInvalidState", 0, 2, {0, state})};
+    return file;
+  };
+  const ScratchFolder scratch;
+  const auto refusal = [&](double azimuth, double elevation) {
+    return refusal_of(scratch.write("a.e57", file_of(azimuth, elevation, 0).build()));
+  };
+  check_says(refusal(7, 0),
+             "data3D[0] ... record 1 (counted from 0): azimuth 7 is no angle in radians up to "
+             "6.28318531; E57 has radians, not degrees");
+  check_says(refusal(-90, 0), "azimuth -90");
+  check_says(refusal(0, 1.6), "record 1 ... elevation 1.6");
+  check_equal(read_scans(file_of(90, 90, 2)).positions.size(), 2);
+  check_equal(read_scans(file_of(-6.2832, 1.5708, 0)).positions.size(), 2);
+}
+
 TEST_CASE("the Cartesian coordinates count where they are valid, then the spherical ones") {
   E57Bytes file;
   file.scans = {e57_scan({1, 2, 3, 4}, {0, 0, 0, 0}, {0, 0, 0, 0})};

@@ -116,7 +116,21 @@ TEST_CASE("many vertices with extra properties arrive in order") {
   }
 }
 
-TEST_CASE("an ASCII PLY with line ends of either kind") {
+TEST_CASE("the binary data of a PLY start behind the line break of its header") {
+  ScratchFolder scratch;
+  // The first byte of the vertex is that of LF.
+  const std::string data = bytes_of(1.5f + 10 * 0x1p-23f, false) + std::string(8, '\0');
+  REQUIRE(data[0] == '\n');
+  const std::string text = header("binary_little_endian", "element vertex 1\n" + kXyz);
+  for (const std::string line_break : {"\n", "\r", "\r\n"}) {
+    std::string head;
+    for (const char c : text) head += c == '\n' ? line_break : std::string(1, c);
+    const auto cloud = read_all(scratch.write("a.ply", head + data));
+    check_equal(cloud.positions, {{1.5 + 10 * 0x1p-23, 0, 0}});
+  }
+}
+
+TEST_CASE("an ASCII PLY with line ends of any kind") {
   ScratchFolder scratch;
   std::string text =
       header("ascii",
@@ -127,10 +141,10 @@ TEST_CASE("an ASCII PLY with line ends of either kind") {
                  "property list uchar int vertex_indices\n") +
       "2 0.5 0.5 255\n255 1 2.25 -3e2 0\n\n  0 +4\t5 6  2 7 8 \n1 nan -inf 1e-400 0\n"
       "3 0 1 2\n";
-  if (GENERATE(false, true)) {
-    for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos; at += 2) {
-      text.insert(at, 1, '\r');
-    }
+  const std::string line_break = GENERATE("\n", "\r", "\r\n");
+  for (std::size_t at = 0; (at = text.find('\n', at)) != std::string::npos;
+       at += line_break.size()) {
+    text.replace(at, 1, line_break);
   }
   const auto reader = open_point_file(scratch.write("a.ply", text));
   for (int pass = 0; pass < 2; ++pass) {

@@ -74,6 +74,22 @@ const std::vector<Vec3> kTwoColumns{{1, -2.5, 3e2}, {4, 5, 6}};
 
 }  // namespace
 
+TEST_CASE("numbers in quotes are numbers, and a quoted text is one field") {
+  CHECK(points_of_columns("\"X\",\"Y\",\"Z\"\n\"1\",\"-2.5\",\"3e2\"\n\"4\",\"5\",\"6\"\n") ==
+        kTwoColumns);
+  CHECK(points_of_columns("\"1\" \"-2.5\" \"+3e2\"\n4 5 6\n") == kTwoColumns);
+  CHECK(points_of_columns("name;x;y;z\n\"a; 7\";\" 1 \";-2.5;300\nb;4;5;6\n") == kTwoColumns);
+  CHECK(points_of_columns("\"a\",\"1\",\"-2.5\",\"300\"\n\"b, 7\",\"4\",\"5\",\"6\"\n",
+                          {"2", "3", "4"}) == kTwoColumns);
+  for (const char* line :
+       {"\"1\",\"2\",\"3", "\"1\"2,3,4", "\"\",2,3", "\"1 2\",3,4", "\"\"1\"\",2,3"}) {
+    CAPTURE(line);
+    check_says(refusal_of_columns("x,y,z\n1,2,3\n" + std::string(line) + "\n").text, "line 3");
+  }
+  const auto quoted = [](int i) { return print("\"%d\",\"%d.5\",\"2.5\",\"3.5\"", i, i % 3); };
+  check_says(refusal_of_columns(table(20, quoted)).text, "looks like");
+}
+
 TEST_CASE("names in a comment count like those in a header") {
   for (const std::string mark : {"#", "//", "# ", "// ", "## ", "# columns: ", "//Fields: "}) {
     INFO(mark);

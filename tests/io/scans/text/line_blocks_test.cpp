@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -45,7 +46,7 @@ std::vector<std::string> lines_in_blocks(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("blocks have the lines of their text, each once") {
+TEST_CASE("lines end with LF, CR LF or CR, also at the borders of blocks and buffers") {
   const ScratchFolder scratch;
   std::mt19937 random(7);
   constexpr std::size_t kBlock = LineBlocks::kBlockBytes, kLongest = InputBuffer::kLongestLine;
@@ -54,7 +55,7 @@ TEST_CASE("blocks have the lines of their text, each once") {
   // The line break stands right before, at, and right behind the end of a block.
   for (std::size_t extra : {0, 1, 2}) {
     std::string text;
-    while (text.size() + kLongest < kBlock) text += std::string(999, 'x') + "\r\n";
+    while (text.size() + kLongest < kBlock) text += std::string(999, 'x') + "\n";
     text += std::string(kBlock - 2 - text.size() + extra, 'y') + "\n";
     texts.push_back(text + "z\nw");
   }
@@ -67,8 +68,22 @@ TEST_CASE("blocks have the lines of their text, each once") {
     texts.push_back(text + "open");
   }
   for (const std::string& text : texts) {
-    const auto path = scratch.write("a.txt", text);
-    CHECK((lines_in_blocks(path) == lines_in_turn(path)));
+    std::vector<std::string> expected;
+    std::istringstream in(text);
+    for (std::string line; std::getline(in, line);) expected.push_back(line);
+    for (const std::vector<std::string>& breaks : std::vector<std::vector<std::string>>{
+             {"\n"}, {"\r\n"}, {"\r"}, {"\n", "\r\n", "\r", "\r\n"}}) {
+      std::string written;
+      std::size_t lines = 0;
+      for (const char c : text) {
+        written += c == '\n' ? breaks[lines++ % breaks.size()] : std::string(1, c);
+      }
+      // An empty line between LF and CR LF, or CR and LF, would change what the breaks are.
+      if (breaks.size() > 1 && text.find("\n\n") != std::string::npos) continue;
+      const auto path = scratch.write("a.txt", written);
+      CHECK((lines_in_turn(path) == expected));
+      CHECK((lines_in_blocks(path) == expected));
+    }
   }
 }
 
@@ -132,6 +147,7 @@ std::string ply(const std::string& vertices, std::size_t count, const std::strin
 TEST_CASE("a long text has its points in the order of its lines") {
   const ScratchFolder scratch;
   check_points(scratch.write("a.xyz", rows(0, kPoints)));
+  check_points(scratch.write("a.xyz", rows(0, kPoints, "\r")));
   check_points(scratch.write("a.xyz", "# one\n" + rows(0, 9, " 7 8\r\n") + "\n// more\n" +
                                           rows(9, 70'000, " 7 8\n") + "\n#\n" +
                                           rows(70'000, kPoints, " 7 8\n")));
@@ -160,6 +176,9 @@ TEST_CASE("a line in the middle of a long text is refused by its number") {
              "line 70001: more than the 69999 points that line 1 declares");
   check_says(refusal_of(scratch.write("a.pts", "70001\n" + rows(0, 70'000))),
              "ends after line 70001 with 70000 points; expected 70001");
+  check_says(refusal_of(scratch.write("a.xyz", rows(0, 30'000, "\r") + rows(0, 30'000, "\r\n") +
+                                                   rows(0, 10'000) + "1 2 x\r" + rows(0, 9))),
+             "line 70001: \"1 2 x\"");
   const std::string long_line = rows(0, 70'000) + "1 2 3 " + std::string(70'000, '4') + "\n";
   check_says(refusal_of(scratch.write("a.xyz", long_line)),
              "line 70001: is longer than 65536 bytes");

@@ -93,6 +93,7 @@ TEST_CASE("malformed text is refused with its line") {
   check_says(refusal_of_text("\xFF\xFE" + std::string("1\0 \0", 4)), "UTF-16");
   check_says(refusal_of_text(std::string("\0001\0 \0002", 6)), "UTF-16");
   check_says(refusal_of_text("PK\x03\x04..."), "ZIP archive");
+  check_says(refusal_of_text("\x1F\x8B\x08"), "compressed with gzip");
   check_says(refusal_of_text("1 2 3\n1 2 3 " + std::string(70'000, 'x') + "\n"),
              "line 2 ... 65536");
 }

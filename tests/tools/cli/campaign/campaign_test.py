@@ -68,6 +68,8 @@ def errors_name_the_key(test):
     test.refused("vehicles.truck.model: is missing", vehicles={"truck": {"unit": "mm"}})
     test.refused("vehicles.truck.model: " + str(test.work / "no.ply") + ": there is no such file",
                  vehicles={"truck": {"model": "no.ply"}})
+    test.refused("vehicles.truck.model: /dev/null: is a pipe or device",
+                 vehicles={"truck": {"model": "/dev/null"}})
     test.refused("vehicles.truck: " + str(test.work / "no*.ply") + ": no file matches",
                  vehicles={"truck": "no*.ply"})
     test.refused("vehicles.truck.unit: parsec", vehicles={"truck": {"model": model,

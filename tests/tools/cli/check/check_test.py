@@ -697,6 +697,9 @@ class Mistakes(Site):
                      "--model takes the vehicle")
         self.refused("scans --model none.ply --trajectory trajectory.txt --radius 0.1 -o out", 4,
                      "none.ply")
+        for piped in ("--model model.ply --trajectory /dev/null", "--model /dev/null --trajectory trajectory.txt"):
+            self.refused(f"scans {piped} --radius 0.1 -o out", 2, "/dev/null: is a pipe or device",
+                         "Write it into a file first")
         self.refused("scans --trajectory trajectory.txt --radius 0.1 -o out", 2, "--model")
         self.asked("")
         self.refused("scans --model site/site.h5 --trajectory trajectory.txt --radius 0.1 -o out",

@@ -2,6 +2,7 @@
 // are not what their names say.
 #include <sys/stat.h>
 
+#include <fstream>
 #include <string_view>
 
 #include "support/catch.hpp"
@@ -60,6 +61,18 @@ TEST_CASE("closed standard descriptors do not become an output's") {
     for (const char* file : {"model.ply", "trajectory.txt", "environment.las"}) {
       check_same(bytes_of(hall.folder / "again" / file), bytes_of(hall.folder / file));
     }
+  }
+}
+
+TEST_CASE("a small stack is enough") {
+  const Hall hall;
+  std::ofstream(hall.folder / "car.off") << "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+                                            "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
+  for (const std::string model : {"model.ply", "car.off"}) {
+    CAPTURE(model);
+    CHECK(hall.shell("ulimit -s 192; {} check " + hall.path("environment.las") + " --model " +
+                     hall.path(model) + " --trajectory " + hall.path("trajectory.txt") +
+                     " --radius 0.1 -o " + hall.path(model + ".d") + " >/dev/null") == 0);
   }
 }
 
