@@ -70,9 +70,10 @@ bool is_rotation_first(std::span<const double> numbers) {
 
 std::string objection_to_angle(const char* name, double value, double most, const char* format) {
   if (std::abs(value) <= most) return {};  // false for NaN
-  return std::string(name) + " " + format_digits(value, 9) + " is no angle in radians up to " +
+  return std::string(name) + " " + format_digits(value, 9) + "; expected an angle up to " +
          format_digits(most, 9) +
-         (std::isfinite(value) ? std::string("; ") + format + " has radians, not degrees" : "");
+         (std::isfinite(value) ? std::string(", as ") + format + " has radians, not degrees"
+                               : " in radians");
 }
 
 Objection pose_of_matrix(std::span<const double> numbers, bool allow_non_rigid, Pose& pose) {

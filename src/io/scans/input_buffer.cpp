@@ -92,26 +92,31 @@ bool InputBuffer::skip(std::uint64_t count) {
 }
 
 bool InputBuffer::next_line(std::string_view& line) {
-  const char* text = nullptr;
-  std::size_t length = 0, available = 0;
+  const auto loaded = [this] {
+    return std::string_view(reinterpret_cast<const char*>(buffer_.get() + begin_), end_ - begin_);
+  };
+  std::string_view text = loaded();
+  std::size_t length = 0;
   for (;;) {
-    text = reinterpret_cast<const char*>(buffer_.get() + begin_);
-    available = end_ - begin_;
-    length = static_cast<std::size_t>(find_line_end(text + length, text + available) - text);
+    const char* const end = text.data() + text.size();
+    length = static_cast<std::size_t>(find_line_end(text.data() + length, end) - text.data());
     // A CR at the end of what is loaded may be the first half of a CR LF.
     const bool is_whole =
-        length + 1 < available || (length + 1 == available && text[length] == '\n');
-    if (is_whole || length > kLongestLine || !fill()) break;
+        length + 1 < text.size() || (length + 1 == text.size() && text[length] == '\n');
+    if (is_whole || length > kLongestLine) break;
+    const bool is_more = fill();
+    text = loaded();  // which fill() moves in any case
+    if (!is_more) break;
   }
-  if (available == 0) return false;
+  if (text.empty()) return false;
   ++line_;
   if (length > kLongestLine) {
     refuse_line(name(), line_, "is longer than 65536 bytes; expected lines of text");
   }
-  break_bytes_ = line_break_bytes(text + length, text + available);
+  break_bytes_ = line_break_bytes(text.data() + length, text.data() + text.size());
   lone_cr_ = lone_cr_ || (break_bytes_ == 1 && text[length] == '\r');
   begin_ += length + break_bytes_;
-  line = {text, length};
+  line = text.substr(0, length);
   return true;
 }
 

@@ -112,8 +112,8 @@ TEST_CASE("angles beyond their range are refused, unless their record is invalid
     return refusal_of(scratch.write("a.e57", file_of(azimuth, elevation, 0).build()));
   };
   check_says(refusal(7, 0),
-             "data3D[0] ... record 1 (counted from 0): azimuth 7 is no angle in radians up to "
-             "6.28318531; E57 has radians, not degrees");
+             "scan 1, record 1 (counted from 0): azimuth 7; expected an angle up to "
+             "6.28318531, as E57 has radians, not degrees");
   check_says(refusal(-90, 0), "azimuth -90");
   check_says(refusal(0, 1.6), "record 1 ... elevation 1.6");
   check_equal(read_scans(file_of(90, 90, 2)).positions.size(), 2);
