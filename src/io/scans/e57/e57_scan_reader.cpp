@@ -405,7 +405,8 @@ Vec3 E57ScanReader::spherical(std::size_t i) const {
   const double azimuth = columns_[kE57Azimuth][i];
   const double elevation = columns_[kE57Elevation][i];
   check_angle("azimuth", azimuth, 2 * std::numbers::pi, i);
-  check_angle("elevation", elevation, std::numbers::pi / 2, i);
+  // Scanners that turn over the zenith count on behind it.
+  check_angle("elevation", elevation, std::numbers::pi, i);
   const double in_plane = range * std::cos(elevation);
   return {in_plane * std::cos(azimuth), in_plane * std::sin(azimuth), range * std::sin(elevation)};
 }

@@ -115,9 +115,9 @@ TEST_CASE("angles beyond their range are refused, unless their record is invalid
              "scan 1, record 1 (counted from 0): azimuth 7; expected an angle up to "
              "6.28318531, as E57 has radians, not degrees");
   check_says(refusal(-90, 0), "azimuth -90");
-  check_says(refusal(0, 1.6), "record 1 ... elevation 1.6");
+  check_says(refusal(0, 3.2), "record 1 ... elevation 3.2");
   check_equal(read_scans(file_of(90, 90, 2)).positions.size(), 2);
-  check_equal(read_scans(file_of(-6.2832, 1.5708, 0)).positions.size(), 2);
+  check_equal(read_scans(file_of(-6.2832, 1.6, 0)).positions.size(), 2);
 }
 
 TEST_CASE("the Cartesian coordinates count where they are valid, then the spherical ones") {
