@@ -228,7 +228,9 @@ class Check {
   /// Refuses files in the wrong place. Where input_roles.hpp names options of single commands,
   /// check names its own.
   void check_roles(const RunOptions& run) const {
-    for (const fs::path& input : input_files()) {
+    std::vector<fs::path> files{run.model, run.trajectory};
+    if (!run.vehicle.empty()) files = vehicle_inputs(run.vehicle, std::move(files));
+    for (const fs::path& input : files) {
       std::error_code unknown;
       if (!fs::is_other(fs::status(input, unknown))) continue;
       throw UsageError(input.string() +
