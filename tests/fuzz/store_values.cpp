@@ -35,8 +35,9 @@ Edit edit_at(const std::uint8_t* bytes) {
 constexpr const char* kDatasets[] = {"cells/count", "cells/box",     "cells/address",
                                      "cells/bytes", "cells/xxh64",   "blocks/box",
                                      "tree/nodes",  "sources/names", "sources/bytes"};
-constexpr const char* kAttributes[] = {"point_count", "input_points", "cell_points", "points_hash",
-                                       "scale",       "offset",       "length_unit", "layout"};
+constexpr const char* kAttributes[] = {"point_count", "input_points", "cell_points",
+                                       "points_hash", "scale",        "offset",
+                                       "length_unit", "layout",       "steps"};
 /// The number of things to edit: values of datasets, their extents, and attributes. One more stands
 /// for the packed chunks.
 constexpr unsigned kWhats = 2 * std::size(kDatasets) + std::size(kAttributes);

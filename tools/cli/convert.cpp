@@ -92,6 +92,7 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   out["withheld_kept"] = withheld.points - withheld.left_out();
   out["near"] = metadata.near ? corridor_json(*metadata.near) : nullptr;
   out["scale"] = metadata.quantisation.scale;
+  out["steps"] = metadata.steps;
   out["offset"] = metadata.quantisation.offset;
   out["box"] = box_json(store);
   out["sources"] = sources_json(metadata);

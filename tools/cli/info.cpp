@@ -71,6 +71,7 @@ ordered_json describe(const StoreReader& store) {
                            {"cell_points", m.cell_points},
                            {"packed_bytes", packed},
                            {"scale", m.quantisation.scale},
+                           {"steps", m.steps},
                            {"offset", m.quantisation.offset},
                            {"bounds", bounds_of(store)},
                            {"length_unit", to_string(m.unit)},

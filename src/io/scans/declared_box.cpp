@@ -1,15 +1,24 @@
 #include "io/scans/declared_box.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/util/format.hpp"
 
 namespace clearway {
 
+bool is_filled_in(const Box& declared) {
+  for (int k = 0; k < 3; ++k) {
+    const double lo = declared.lo[k], hi = declared.hi[k];
+    if (!std::isfinite(lo) || !std::isfinite(hi) || lo > hi) return false;
+  }
+  return !(declared.lo == declared.hi);
+}
+
 bool goes_far_beyond(const Box& declared, const std::optional<Box>& found) {
+  if (!found || !is_filled_in(declared)) return false;
   double size = 0;
   for (int k = 0; k < 3; ++k) size = std::max(size, declared.hi[k] - declared.lo[k]);
-  if (!found || !(size > 0)) return false;
   for (int k = 0; k < 3; ++k) {
     if (found->lo[k] < declared.lo[k] - size || found->hi[k] > declared.hi[k] + size) return true;
   }

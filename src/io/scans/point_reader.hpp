@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "clearway/box.hpp"
+#include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
@@ -37,8 +38,8 @@ enum class GpsTimes {
 struct CloudInfo : StatedCrs {
   std::optional<Quantisation> quantisation;      ///< where points are stored as integers
   std::optional<std::uint64_t> declared_points;  ///< where the format declares a count
-  /// Box of all points, where the format declares one. It is compared with the points and never
-  /// trusted.
+  /// Box of all points, where the format declares one and the writer filled it in. It is compared
+  /// with the points, and trusted only for ConvertOptions::trust_bounds.
   std::optional<Box> declared_box;
   std::uint64_t faces = 0;  ///< number of faces in a mesh; they are not read
   /// See Query::model_spacing; known where `clearway model` wrote the file.
@@ -81,12 +82,22 @@ struct PointBatch {
   /// The GPS time of each point. Empty unless PointReadOptions::with_times asks for them and the
   /// file has them.
   std::vector<double> times = {};
+  /// The pose that the reader has applied to all of the positions, where it turned them.
+  std::optional<Pose> turn = {};
 
   std::size_t size() const { return quanta.size() + positions.size(); }
   bool is_withheld(std::size_t point) const {
     return !flags.empty() && (flags[point] & PointFlags::kWithheld) != 0;
   }
 };
+
+/// The pose, where it turns points and does not shift them alone.
+inline std::optional<Pose> turn_of(const Pose& pose) {
+  for (std::size_t i = 0; i < 9; ++i) {
+    if (pose.rotation[i] != (i % 4 == 0 ? 1 : 0)) return pose;
+  }
+  return std::nullopt;
+}
 
 /// The bytes of a file from which a piece of its points was read, or would have been.
 struct PieceBytes {

@@ -133,6 +133,9 @@ struct StoreMetadata {
   std::uint64_t input_points = 0;
   std::uint32_t cell_points = 0;
   Quantisation quantisation{};
+  /// The coarsest step to which an input rounded its coordinates, of each axis and in the unit of
+  /// the coordinates; 0 where an axis has few values, and where inputs are regular rasters
+  std::array<double, 3> steps{};
   std::string layout;  ///< "adaptive" or "regular:SIZE"
   /// The options of the conversion that shape a store, a line each, such as "scale: none"; files
   /// by a hash of their contents. A conversion with other options would make another store.

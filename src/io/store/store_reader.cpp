@@ -143,6 +143,8 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   const auto offset = hdf5::read_attribute<double>(file, "offset", 3, name);
   std::copy(scale.begin(), scale.end(), metadata.quantisation.scale);
   std::copy(offset.begin(), offset.end(), metadata.quantisation.offset);
+  const auto steps = hdf5::read_attribute<double>(file, "steps", 3, name);
+  std::copy(steps.begin(), steps.end(), metadata.steps.begin());
   metadata.layout = hdf5::read_text_attribute(file, "layout", name);
   metadata.options = hdf5::read_text_attribute(file, "options", name);
   metadata.unit = length_unit_of(hdf5::read_text_attribute(file, "length_unit", name));
@@ -153,6 +155,9 @@ StoreMetadata read_metadata(const hdf5::Id& file, const std::string& name, Colum
   for (int k = 0; k < 3; ++k) {
     if (!(scale[k] > 0) || !std::isfinite(scale[k]) || !std::isfinite(offset[k])) {
       refuse(name, "attributes 'scale' and 'offset': expected finite numbers, the scale above 0");
+    }
+    if (!(steps[k] >= 0) || !std::isfinite(steps[k])) {
+      refuse(name, "attribute 'steps': expected finite numbers of at least 0");
     }
   }
   if (metadata.input_points < metadata.point_count) {
@@ -485,6 +490,7 @@ std::uint64_t StoreReader::fingerprint() const {
   add(numbers);
   add(metadata().quantisation.scale);
   add(metadata().quantisation.offset);
+  add(metadata().steps);
   add(metadata().crs_wkt);
   add(std::string(to_string(metadata().unit)));
   add(metadata().options);

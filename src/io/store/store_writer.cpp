@@ -170,6 +170,7 @@ void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnH
   hdf5::write_number(file, "points_hash", metadata.points_hash);
   hdf5::write_attribute<double>(file, "scale", metadata.quantisation.scale);
   hdf5::write_attribute<double>(file, "offset", metadata.quantisation.offset);
+  hdf5::write_attribute<double>(file, "steps", metadata.steps);
   hdf5::write_attribute(file, "layout", metadata.layout);
   hdf5::write_attribute(file, "options", metadata.options);
   hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));

@@ -257,7 +257,7 @@ void check_surroundings(const Question& question, const PathLooks& looks, bool f
 namespace {
 
 constexpr double kLargestRadius = 10;  ///< metres
-/// The least number of steps of the stored coordinates in a radius.
+/// The least number of steps of the coordinates in a radius.
 constexpr double kSteps = 10;
 /// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
 /// spacings wide and 8 spacings high.
@@ -275,20 +275,44 @@ void warn_of_large_radius(const Question& question, MessageLog& log) {
            {{"radius", radius}, {"model_longest", longest}});
 }
 
-void warn_of_fine_radius(const Question& question, MessageLog& log) {
+/// A step of coordinates is known to 1 %.
+constexpr double kExact = 0.99;
+
+/// Compares the radius with the steps of the coordinates: those of the store, or the coarser ones
+/// to which the scans were rounded before. One of the two warnings says it.
+void check_steps(const Question& question, MessageLog& log) {
   const double* scale = question.cloud.quantisation().scale;
-  const double step = *std::max_element(scale, scale + 3);
-  const double radius = question.query.radius;
-  if (question.is_load() && radius == 0) return;  // points count where they touch the load
+  // A section without a margin depends on its cells.
+  const bool is_touching = question.is_load() && question.query.radius == 0;
+  const double radius = is_touching ? question.section->cell : question.query.radius;
+  double step = *std::max_element(scale, scale + 3);
+  std::string axes, steps;
+  for (std::size_t k = 0; k < 3; ++k) {
+    step = std::max(step, question.steps[k]);
+    if (question.steps[k] < kExact * radius || question.steps[k] == 0) continue;
+    axes += std::string(axes.empty() ? "" : ", ") + "xyz"[k];
+    steps += (steps.empty() ? "" : ", ") + length_text(question.steps[k], question.unit);
+  }
+  const std::string distance = is_touching ? "side of a cell" : question.words().distance;
+  if (!axes.empty()) {
+    log.warn("coarse-digits",
+             "the scan's coordinates " + axes + " come in steps of " + steps + ", and the " +
+                 distance + " is " + length_text(radius, question.unit) +
+                 ": a point may be farther than that from where it was measured, so that what "
+                 "stands in the way can be missed. Export the scan with more digits, or take a " +
+                 distance + " above the steps",
+             {{"radius", radius}, {"step", step}});
+    return;
+  }
   // A radius of ten steps as typed causes no warning because of its rounding.
-  if (radius >= kSteps * step * (1 - 1e-9)) return;
-  log.warn(
-      "fine-radius",
-      "the " + std::string(question.words().distance) + " is " +
-          length_text(radius, question.unit) + ", the scan's coordinates are in steps of " +
-          length_text(step, question.unit) + ": rounding decides which points collide. Check the " +
-          (question.is_load() ? "margin's" : "radius'") + " unit, or store the scan in finer steps",
-      {{"radius", radius}, {"step", step}});
+  if (is_touching || radius >= kSteps * step * (1 - 1e-9)) return;
+  log.warn("fine-radius",
+           "the " + distance + " is " + length_text(radius, question.unit) +
+               ", the scan's coordinates are in steps of " + length_text(step, question.unit) +
+               ": rounding decides which points collide. Check the " +
+               (question.is_load() ? "margin's" : "radius'") +
+               " unit, or store the scan in finer steps",
+           {{"radius", radius}, {"step", step}});
 }
 
 /// Warns of a scan whose points are far apart, because it says nothing about what lies between
@@ -347,7 +371,7 @@ void check_errors(const QueryParameters& query, MessageLog& log) {
 
 void check_radius(const Question& question, MessageLog& log) {
   warn_of_large_radius(question, log);
-  warn_of_fine_radius(question, log);
+  check_steps(question, log);
   if (question.cloud.point_count() >= kBlockPoints) check_coarse_scan(question, log);
 }
 

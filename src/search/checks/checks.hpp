@@ -52,7 +52,8 @@ void check_model_spacing(const Question& question, MessageLog& log);
 /// Warns of an error budget whose numbers are hardly meant so: "few-sigmas", "small-error-angle".
 void check_errors(const QueryParameters& query, MessageLog& log);
 
-/// Compares the radius with model and scan: "radius-size", "fine-radius", "coarse-scan".
+/// Compares the radius with model and scan: "radius-size", "coarse-digits" or
+/// "fine-radius", "coarse-scan".
 void check_radius(const Question& question, MessageLog& log);
 
 /// Warns of what may lie between two poses: "large-steps", and "trajectory-jump" for steps that

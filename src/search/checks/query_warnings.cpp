@@ -289,6 +289,7 @@ void warn_of_body(const StoreReader& store, const Body& body, const Query& query
   const Query own(body.model, body.poses, query);
   Question question(store, store.metadata().unit, own, looks, body.path_pose, chainage);
   question.longest = std::max(question.longest, vehicle_longest);
+  question.steps = store.metadata().steps;
   note_sizes(question, log);
   check_question(question, around, true, of_inputs, steps, log);
 }
@@ -368,7 +369,15 @@ void note_withheld(const StoreMetadata& store, MessageLog& log) {
 /// Warns of scan and path as they are. Returns whether there is more to check.
 bool warn_of_inputs(const StoreReader& store, std::size_t poses, const QuestionWords& words,
                     std::span<const Message> of_inputs, MessageLog& log) {
-  for (Message& warning : store_warnings(store.metadata())) log.add(std::move(warning));
+  for (Message& warning : store_warnings(store.metadata())) {
+    // The radius is compared with the steps themselves, unless they are those of a raster.
+    const std::pair<std::string, double> of_scan{"raster", 0};
+    if (warning.code == "store-lost-digits" &&
+        std::ranges::find(warning.numbers, of_scan) != warning.numbers.end()) {
+      continue;
+    }
+    log.add(std::move(warning));
+  }
   note_withheld(store.metadata(), log);
   const LengthUnit unit = store.metadata().unit;
   if (poses == 0) {
@@ -403,6 +412,7 @@ void check_motion(const StoreReader& store, const Query& query, const LooksOf& l
   }
   const std::shared_ptr<const ModelLooks> looks = looks_of(query.model);
   Question question(store, unit, query, *looks);
+  question.steps = store.metadata().steps;
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;
@@ -424,8 +434,8 @@ void check_load(const StoreReader& store, const SectionParameters& asked, const 
     query.model.vertices.push_back(box.corner(corner));
   }
   const ModelLooks looks(query.model, query.radius);
-  const Question question(store, store.metadata().unit, query, looks, load.path_pose, chainage,
-                          &asked);
+  Question question(store, store.metadata().unit, query, looks, load.path_pose, chainage, &asked);
+  question.steps = store.metadata().steps;
   note_sizes(question, log);
   warn_of_flat_scan(question, log);
   StepChecks steps;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -72,6 +73,8 @@ struct Question {
   double longest;
   /// The length of a metre in the environment's unit.
   double metre;
+  /// StoreMetadata::steps of the environment
+  std::array<double, 3> steps{};
 };
 
 /// The lengths of a box's sides, the longest first.

@@ -13,6 +13,7 @@
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/cut_off.hpp"
 #include "io/scans/declared_box.hpp"
 #include "io/scans/e57/e57_file.hpp"
 #include "io/scans/e57/e57_scan_reader.hpp"
@@ -37,6 +38,7 @@ class E57Remarks {
   std::uint64_t records_ = 0, absent_ = 0;
   std::uint64_t beyond_bounds_ = 0;
   std::string first_beyond_bounds_;
+  CutOffWarning cut_off_;
 };
 
 Message note(std::string text, std::vector<std::pair<std::string, double>> numbers) {
@@ -53,6 +55,10 @@ void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
   absent_ += findings.absent;
   if (scan.records == 0) ++empty_;
   if (scan.pose && scan.records > 0) ++posed_;
+  if (scan.is_cartesian()) {
+    const auto scale = [&](E57Place place) { return scan.fields[scan.places[place]].scale; };
+    cut_off_.add(scan.name(), findings.cut_off, {scale(kE57X), scale(kE57Y), scale(kE57Z)});
+  }
   // By the standard, bounds are those of the points before the pose is applied; some writers give
   // those after it.
   if (!scan.bounds || !goes_far_beyond(*scan.bounds, findings.own) ||
@@ -96,6 +102,10 @@ std::vector<Message> E57Remarks::messages(const std::string& file) const {
                               " with points far beyond the declared bounds (" +
                               first_beyond_bounds_ + ", metres). Is the unit of length right?",
                           {{"scans_beyond_bounds", number(beyond_bounds_)}}));
+  }
+  if (auto cut_off = cut_off_.message()) {
+    cut_off->text.insert(0, file + ": ");
+    all.push_back(std::move(*cut_off));
   }
   return all;
 }
@@ -180,6 +190,7 @@ class E57Reader final : public PointReader {
       }
       if (!reader_)
         reader_ = std::make_unique<E57ScanReader>(pages_, scans_[scan_], extents_[scan_]);
+      batch.turn = scans_[scan_].pose ? turn_of(*scans_[scan_].pose) : std::nullopt;
       if (reader_->read(batch)) return true;
       remarks_.add(scans_[scan_], reader_->findings());
     }

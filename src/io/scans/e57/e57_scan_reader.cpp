@@ -411,12 +411,34 @@ Vec3 E57ScanReader::spherical(std::size_t i) const {
   return {in_plane * std::cos(azimuth), in_plane * std::sin(azimuth), range * std::sin(elevation)};
 }
 
+/// Counts the valid ones of decoded Cartesian coordinates that are at the ends of their integers,
+/// where a field has all of 32 bits.
+void E57ScanReader::count_cut_off(std::size_t count) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    const E57Field& field = scan_.fields[scan_.places[kE57X + k]];
+    if (field.kind != E57Field::Kind::kInteger || field.bits > 32 ||
+        field.minimum < CutOff::kLowest || field.minimum > CutOff::kGreatest) {
+      continue;
+    }
+    const auto add = [&](std::int64_t end, std::uint64_t& points) {
+      const double value = static_cast<double>(end) * field.scale + field.offset;
+      for (std::size_t i = 0; i < count; ++i) {
+        if (columns_[kE57X + k][i] == value && is_valid(kE57CartesianState, i)) ++points;
+      }
+    };
+    const std::int64_t last = field.minimum + (std::int64_t{1} << field.bits) - 1;
+    if (field.minimum == CutOff::kLowest) add(CutOff::kLowest, findings_.cut_off.lowest[k]);
+    if (last == CutOff::kGreatest) add(CutOff::kGreatest, findings_.cut_off.greatest[k]);
+  }
+}
+
 /// Computes the points of decoded records and lists the absent ones. out: points of the batch from
 /// index `first` on.
 void E57ScanReader::place_points(std::span<Vec3> out, std::size_t first,
                                  std::vector<std::uint32_t>& absent) {
   const bool has_cartesian = cursors_[kE57X].has_value();
   const bool has_spherical = cursors_[kE57Range].has_value();
+  if (has_cartesian) count_cut_off(out.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
     if (has_cartesian && is_valid(kE57CartesianState, i)) {
       out[i] = cartesian(i);

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "io/scans/cut_off.hpp"
 #include "io/scans/e57/e57_document.hpp"
 #include "io/scans/e57/e57_file.hpp"
 #include "io/scans/point_reader.hpp"
@@ -110,6 +111,7 @@ struct E57Findings {
   std::uint64_t absent = 0;  ///< records without a valid point
   std::optional<Box> own;    ///< box of the finite points, without the pose
   std::optional<Box> posed;  ///< box of the finite points, with the pose
+  CutOff cut_off;            ///< points at the ends of fields of 32-bit integers
 };
 
 /// Reads the points of one scan and applies its pose.
@@ -137,6 +139,7 @@ class E57ScanReader {
   void check_angle(const char* name, double value, double most, std::size_t i) const;
   void place_points(std::span<Vec3> out, std::size_t first, std::vector<std::uint32_t>& absent);
   Vec3 cartesian(std::size_t i) const;
+  void count_cut_off(std::size_t count);
   Vec3 spherical(std::size_t i) const;
   void finish();
 

@@ -13,6 +13,7 @@
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/declared_box.hpp"
 
 namespace clearway {
 namespace {
@@ -98,15 +99,15 @@ std::string date_of(unsigned day, unsigned year) {
   return text;
 }
 
-/// Reads the bounds, which are stored as the greatest and the least of x, of y and of z.
+/// Reads the bounds, which are stored as the greatest and the least of x, of y and of z; nullopt
+/// where the writer did not fill them in.
 std::optional<Box> read_box(const std::byte* bytes) {
   Box box;
   for (int k = 0; k < 3; ++k) {
     box.hi[k] = load<double>(bytes + 179 + 16 * k);
     box.lo[k] = load<double>(bytes + 187 + 16 * k);
-    if (!std::isfinite(box.lo[k]) || !std::isfinite(box.hi[k])) return std::nullopt;
   }
-  return box;
+  return is_filled_in(box) ? std::optional(box) : std::nullopt;
 }
 
 /// Reads the fields of version 1.4. rest: the header from byte 227 on.

@@ -1,5 +1,6 @@
 #include "io/scans/laz/copc_hierarchy.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -92,8 +93,11 @@ std::vector<Box> read_copc_cubes(const InputBuffer& input, std::span<const std::
       }
       if (points == 0) continue;
       const auto chunk = chunk_at.find(offset);
-      if (key[0] < 0 || key[0] > kDeepest || points < 0 || chunk == chunk_at.end() ||
-          named[chunk->second] ||
+      const auto is_outside = [&](std::int32_t index) {
+        return index < 0 || std::int64_t{index} >> key[0] > 0;
+      };
+      if (key[0] < 0 || key[0] > kDeepest || std::any_of(key + 1, key + 4, is_outside) ||
+          points < 0 || chunk == chunk_at.end() || named[chunk->second] ||
           chunks[chunk->second].points != static_cast<std::uint64_t>(points)) {
         refuse_hierarchy(input, "an entry at byte " + std::to_string(page.begin + at) +
                                     " that is not of one of its chunks");

@@ -30,6 +30,7 @@ struct PtxHeader {
   std::uint64_t points = 0;  ///< number of points, columns times rows
   /// Row-major with last column 0 0 0 1; a point p as a row becomes p M.
   std::array<double, 16> matrix{};
+  Pose pose{};                 ///< the matrix as a pose
   Vec3 position{};             ///< where the scanner stood
   double stretch[2] = {1, 1};  ///< least and greatest singular value of the matrix' rotation
   double determinant = 1;
@@ -90,8 +91,9 @@ void read_row(InputBuffer& input, std::size_t row, std::array<double, 16>& matri
 }
 
 void judge_matrix(const InputBuffer& input, PtxHeader& header) {
-  Pose pose{};
+  Pose& pose = header.pose;
   for (std::size_t i = 0; i < 9; ++i) pose.rotation[i] = header.matrix[i % 3 * 4 + i / 3];
+  for (std::size_t k = 0; k < 3; ++k) pose.translation[k] = header.matrix[12 + k];
   const Stretch stretch = stretch_of(pose);
   if (!(stretch.least > 0) || !std::isfinite(stretch.greatest)) {
     fail(input, "the 4x4 matrix of the scan has singular values from " +
@@ -220,12 +222,14 @@ class PtxReader final : public PointReader {
     batch.absent.clear();
     while (batch.positions.size() < kBatchPoints) {
       if (left_ == 0) {
-        if (!next_scan()) break;
+        // A batch holds points of one scan.
+        if (!batch.positions.empty() || !next_scan()) break;
         continue;
       }
       const auto index = static_cast<std::uint32_t>(batch.positions.size());
       if (!read_point(batch.positions.emplace_back())) batch.absent.push_back(index);
     }
+    batch.turn = turn_of(scan_.pose);
     if (batch.positions.empty()) finish();
     return !batch.positions.empty();
   }

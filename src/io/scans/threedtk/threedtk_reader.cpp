@@ -101,6 +101,7 @@ class ThreedtkReader final : public PointReader {
       batch.positions[count++] = place(from_threedtk(point));
     }
     batch.positions.resize(count);
+    batch.turn = turn_of(pose_);
     if (count == 0) finish();
     return count > 0;
   }

@@ -351,7 +351,9 @@ class Conversion {
     check_cells(top, tree.units().size());
     report_.count_seconds = watch_.lap();
 
-    PlaceCounter places(all.suspects);
+    const double metres = metres_of(environment.unit());
+    PlaceCounter places(all.suspects, StepJudge(all.steps, environment.quantisation(),
+                                                metres > 0 ? 1 / metres : 1));
     Distribution distribution(tree, point_files(tree.units().size()),
                               journal_ ? ConversionJournal::kPointsBegin : 0);
     if (journal() != nullptr) resume_distribution(distribution, places);
@@ -365,6 +367,7 @@ class Conversion {
     keep_distributed(environment, places);
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
+    record_steps(places.steps());
     record_origins();
     if (options_.strict) refuse_warnings(report_.warnings);
     report_.metadata.warnings = kept_warnings(report_.warnings);
@@ -379,13 +382,14 @@ class Conversion {
     std::vector<SourceFile> sources;
     FileBoxes boxes;
     std::vector<PlaceQuanta> suspects;
+    std::vector<InputSteps> steps;
     /// Remarks on the path of the origins, and on the points' places on it.
     std::vector<Message> of_path, of_places;
     std::optional<OriginsPathReport> origins_path;
 
     template <typename Values>
     void keep(Values& values) {
-      values.add(environment, sources, boxes, suspects, of_path, of_places);
+      values.add(environment, sources, boxes, suspects, steps, of_path, of_places);
       std::uint8_t has_path = origins_path ? 1 : 0;
       values.add(has_path);
       if (has_path == 0) return;
@@ -430,14 +434,15 @@ class Conversion {
       described[i] = true;
     }
     SourceDescription others(environment.read_files(), described, progress_);
-    InputSurvey survey;
+    InputSurvey survey{PlaceSample(environment.quantisation()), {}};
     all.environment =
         count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_,
                           path ? &*path : nullptr, journal_ ? &*journal_ : nullptr);
     all.sources = others.get(hashes.finish());
     all.boxes.take(survey.boxes);
     all.suspects = survey.places.suspects();
-    if (path) {
+    all.steps = find_steps(survey.places.points(), environment.points_of_files());
+    if (path && all.environment.points > 0) {
       const MessageCallback collect = [&](const Message& message) {
         all.of_places.push_back(message);
       };
@@ -578,6 +583,12 @@ class Conversion {
       add_origins_of_inputs(environment, origins);
     }
     origins.finish();
+  }
+
+  /// Describes the steps of the coordinates in the store, and warns of coarse ones.
+  void record_steps(const StepJudge& steps) {
+    report_.metadata.steps = steps.rounded_to();
+    if (auto lost = steps.warning_on_lost_digits(report_.metadata.unit)) log_.add(*lost);
   }
 
   /// Describes the origins in the store and warns of them, once all points were counted.

@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "io/scans/point_reader.hpp"
@@ -45,8 +44,6 @@ class CoordinateRange {
   }
 
   Far far_points(double reach) const;
-  /// A sample of the points: every n-th one.
-  const std::vector<Vec3>& samples() const { return samples_; }
 
  private:
   static constexpr std::size_t kKept = 16;  // points kept on each side of each axis
@@ -60,14 +57,10 @@ class CoordinateRange {
 
   // For each side() the most extreme points, in descending order.
   std::array<std::vector<InputPoint>, 6> extremes_;
-  std::vector<Vec3> samples_;  // every (mask + 1)-th point
+  std::vector<Vec3> samples_;  // a sample of the points: every (mask + 1)-th one
   std::uint64_t sample_mask_ = 0;
   std::uint64_t count_ = 0;
 };
-
-/// Warnings on axes along which all samples are multiples of a coarse step, a power of ten or of
-/// two. The digits below it were lost, by rounding in text or by single floats far from the origin.
-std::vector<Message> warn_of_lost_digits(std::span<const Vec3> samples);
 
 /// The coarsest step in metres that a conversion chooses by itself.
 inline constexpr double kCoarsestOwnScale = 1e-3;

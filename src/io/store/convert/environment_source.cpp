@@ -63,15 +63,13 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
   chose_scale_ = true;
   if (found != nullptr && found->chosen) {
     quantisation_ = *found->chosen;
-    range_warnings_ = found->warnings;
     return;
   }
   choose_offset_and_scale(progress);
 }
 
 FoundInputs EnvironmentSource::found() const {
-  return {inputs_.readable(), chose_scale_ ? std::optional(quantisation_) : std::nullopt,
-          range_warnings_};
+  return {inputs_.readable(), chose_scale_ ? std::optional(quantisation_) : std::nullopt};
 }
 
 ReadState EnvironmentSource::state() const {
@@ -170,7 +168,6 @@ std::shared_ptr<PointReader> EnvironmentSource::converted(
 
 std::vector<Message> EnvironmentSource::remarks() const {
   std::vector<Message> all = crs_.warnings;
-  all.insert(all.end(), range_warnings_.begin(), range_warnings_.end());
   const std::vector<Message> of_files = inputs_.remarks();
   all.insert(all.end(), of_files.begin(), of_files.end());
   if (!shifts_.empty()) {
@@ -203,7 +200,6 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
   }
   progress.end();
   rewind();
-  range_warnings_ = warn_of_lost_digits(range.samples());
   quantisation_ = choose_scale(range, options_.scale, files(), how_to_read_);
 }
 
@@ -384,17 +380,25 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
     drop_far(batch);
   }
   keep_classes(records, batch);
+  count_cut_off(batch);
   batch.times = std::move(records.points.times);
+  batch.turn = records.points.turn;
   records.points = {};
 }
 
 void EnvironmentSource::keep_near(const Corridor& corridor, bool trust_bounds) {
   corridor_ = &corridor;
+  Box path{corridor.path().front(), corridor.path().front()};
+  for (const Vec3& p : corridor.path()) path.extend(p);
   for (const CloudInfo& info : infos_) {
-    // Bounds without any extent were never filled in.
-    const bool has_bounds = info.declared_box && !(info.declared_box->lo == info.declared_box->hi);
+    std::optional<Box> bounds = info.declared_box;
+    for (int k = 0; bounds && k < 3; ++k) {
+      if (bounds->lo[k] != 0 || bounds->hi[k] != 0) continue;
+      bounds->lo[k] = path.lo[k];  // nobody filled in this axis, so that it says nothing
+      bounds->hi[k] = path.hi[k];
+    }
     passed_over_.push_back(trust_bounds && !stream_ && info.quantisation && info.declared_points &&
-                           has_bounds && is_far(info.declared_box));
+                           is_far(bounds));
   }
 }
 
@@ -406,6 +410,7 @@ void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& o
   out.offsets.clear();
   out.classes.clear();
   out.times.clear();
+  out.turn.reset();
   out.records = out.far_points = out.unread_points = records.unread;
   out.unread_bytes = records.unread_bytes;
   out.whole.points = records.unread;
@@ -456,14 +461,34 @@ void EnvironmentSource::drop_far(QuantaBatch& out) const {
   out.offsets = std::move(offsets);
 }
 
-/// Keeps the classes of the points that were not left out.
+/// Keeps the classes of the points that were not left out, where one of these has a class.
 void EnvironmentSource::keep_classes(RecordBatch& records, QuantaBatch& out) {
   std::vector<std::uint8_t>& classes = records.points.classes;
-  const auto is_set = [](std::uint8_t value) { return value != 0; };
-  if (std::none_of(classes.begin(), classes.end(), is_set)) return;
+  if (classes.empty()) return;
   for (std::size_t i = 0; i < out.offsets.size(); ++i) classes[i] = classes[out.offsets[i]];
   classes.resize(out.quanta.size());
-  out.classes = std::move(classes);
+  const auto is_set = [](std::uint8_t value) { return value != 0; };
+  if (std::ranges::any_of(classes, is_set)) out.classes = std::move(classes);
+}
+
+/// Counts the points that are at the ends of their file's integers.
+void EnvironmentSource::count_cut_off(QuantaBatch& out) const {
+  const std::optional<Quantisation>& own = infos_[out.file].quantisation;
+  if (!own) return;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto count = [&](std::int64_t end) -> std::uint64_t {
+      const double at = coordinate(*own, static_cast<int>(k), static_cast<std::int32_t>(end));
+      const double rounded =
+          std::nearbyint((at - quantisation_.offset[k]) / quantisation_.scale[k]);
+      const double quantum =
+          shifts_.empty() ? rounded : static_cast<double>(end + shifts_[out.file][k]);
+      if (out.whole.lo[k] != quantum && out.whole.hi[k] != quantum) return 0;
+      return static_cast<std::uint64_t>(
+          std::ranges::count_if(out.quanta, [&](const auto& q) { return q[k] == quantum; }));
+    };
+    out.whole.cut_off.lowest[k] = count(CutOff::kLowest);
+    out.whole.cut_off.greatest[k] = count(CutOff::kGreatest);
+  }
 }
 
 namespace {

@@ -50,14 +50,12 @@ struct ReadCounts {
 /// What has to be read of all inputs before their points can be read in order.
 struct FoundInputs {
   ReadableInputs readable;
-  /// The scale and offset that were chosen, and warnings on the coordinates; nullopt where the
-  /// inputs have integers.
+  /// The scale and offset that were chosen; nullopt where the inputs have integers.
   std::optional<Quantisation> chosen;
-  std::vector<Message> warnings;
 
   template <typename Values>
   void keep(Values& values) {
-    values.add(readable, chosen, warnings);
+    values.add(readable, chosen);
   }
 };
 
@@ -203,6 +201,7 @@ class EnvironmentSource {
   void append_kept(RecordBatch& records, QuantaBatch& out) const;
   void append_rounded(const RecordBatch& records, QuantaBatch& out) const;
   static void keep_classes(RecordBatch& records, QuantaBatch& out);
+  void count_cut_off(QuantaBatch& out) const;
   bool is_far(const std::optional<Box>& bounds) const {
     return corridor_ != nullptr && bounds && !corridor_->may_hold(*bounds);
   }
@@ -227,7 +226,6 @@ class EnvironmentSource {
   // Edge of a cube of 1 m in the unit of the coordinates. It is that of the last rewind(), because
   // next() may change crs_ while other threads are in convert().
   double withheld_edge_ = 1;
-  std::vector<Message> range_warnings_;  // warnings on the coordinates as read
   std::optional<std::uint64_t> declared_points_;
 
   std::shared_ptr<PointReader> stream_;   // standard input, spooled

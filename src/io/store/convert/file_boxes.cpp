@@ -187,6 +187,18 @@ std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
                  {{"files", static_cast<double>(count)}});
 }
 
+std::optional<Message> cut_off_points(std::span<const FileBox> boxes,
+                                      std::span<const std::filesystem::path> files,
+                                      std::span<const CloudInfo> infos) {
+  CutOffWarning found;
+  for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
+    if (!infos[i].quantisation) continue;
+    const double* scale = infos[i].quantisation->scale;
+    found.add(files[i].string(), boxes[i].cut_off, {scale[0], scale[1], scale[2]});
+  }
+  return found.message();
+}
+
 std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
                                        const Quantisation& quantisation,
                                        std::span<const std::filesystem::path> files) {

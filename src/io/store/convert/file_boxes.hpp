@@ -47,6 +47,11 @@ std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
                                              std::span<const std::filesystem::path> files,
                                              std::span<const CloudInfo> infos);
 
+/// The warning on inputs with points at the ends of their integers; nullopt where there is none.
+std::optional<Message> cut_off_points(std::span<const FileBox> boxes,
+                                      std::span<const std::filesystem::path> files,
+                                      std::span<const CloudInfo> infos);
+
 /// Warnings on inputs that hold no point, lie far from all others, or are far larger than others.
 std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
                                        const Quantisation& quantisation,

@@ -107,6 +107,9 @@ std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const Fi
           beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
     log.add(std::move(*warning));
   }
+  if (auto warning = cut_off_points(of_files, files, environment.infos())) {
+    log.add(std::move(*warning));
+  }
   if (auto warning = warning_on_same_scans(files, metadata.sources, of_files)) {
     log.add(std::move(*warning));
   }

@@ -226,7 +226,7 @@ void PathOrigins::OfBatch::add(const OfBatch& other) {
 
 void PathOrigins::add(const QuantaBatch& batch, const OfBatch& origins) {
   OfFile& file = files_[batch.file];
-  file.points += batch.records;
+  file.points += batch.quanta.size();
   file.with_time += origins.with_time;
   file.first = std::min(file.first, origins.first);
   file.last = std::max(file.last, origins.last);

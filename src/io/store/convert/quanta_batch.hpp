@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "io/scans/cut_off.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/store_metadata.hpp"
 
@@ -31,8 +33,10 @@ struct RecordBatch {
 struct FileBox {
   std::uint64_t points = 0;
   std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
+  CutOff cut_off{};               ///< of the points that are stored, where the input has integers
 
   void add(const FileBox& other) {
+    cut_off.add(other.cut_off);
     if (other.points == 0) return;
     for (int k = 0; k < 3; ++k) {
       lo[k] = points == 0 ? other.lo[k] : std::min(lo[k], other.lo[k]);
@@ -70,6 +74,8 @@ struct QuantaBatch {
 
   /// The GPS time of each record, with or without a point; empty where they are not wanted.
   std::vector<double> times;
+
+  std::optional<Pose> turn{};  ///< PointBatch::turn
 
   std::uint64_t records = 0;  ///< number of input points
   std::uint64_t non_finite_points = 0;

@@ -35,8 +35,11 @@ std::size_t slot_of(const PlaceQuanta& q) {
 }  // namespace
 
 void PlaceSample::add(const QuantaBatch& batch) {
+  const MeasuredQuanta measured(batch, quantisation_);
   while (next_ < seen_ + batch.quanta.size()) {
-    samples_.push_back(batch.quanta[next_ - seen_]);
+    const PlaceQuanta& at = batch.quanta[next_ - seen_];
+    samples_.push_back(
+        {at, measured(at), static_cast<std::uint32_t>(batch.file), batch.turn.has_value()});
     ++group_;
     if (samples_.size() == kMostSamples) thin();
     choose_next();
@@ -60,7 +63,8 @@ void PlaceSample::choose_next() {
 }
 
 std::vector<PlaceQuanta> PlaceSample::suspects() const {
-  std::vector<PlaceQuanta> sorted = samples_;
+  std::vector<PlaceQuanta> sorted;
+  for (const SampledPoint& point : samples_) sorted.push_back(point.at);
   std::sort(sorted.begin(), sorted.end());
   std::vector<PlaceQuanta> found;
   // Half of the expected number, because a sample varies.
@@ -75,7 +79,8 @@ std::vector<PlaceQuanta> PlaceSample::suspects() const {
   return found;
 }
 
-PlaceCounter::PlaceCounter(const std::vector<PlaceQuanta>& places) {
+PlaceCounter::PlaceCounter(const std::vector<PlaceQuanta>& places, StepJudge steps)
+    : steps_(std::move(steps)) {
   if (!places.empty()) table_.resize(kTableSize);
   for (const PlaceQuanta& q : places) {
     places_.push_back({.at = q, .first = ~std::uint64_t{0}});
@@ -85,7 +90,17 @@ PlaceCounter::PlaceCounter(const std::vector<PlaceQuanta>& places) {
   }
 }
 
+void PlaceCounter::add_cubes(const QuantaBatch& batch) {
+  std::shared_lock reading(cubes_mutex_);
+  const std::vector<StepJudge::Found> found = steps_.cubes_of(batch);
+  reading.unlock();
+  if (found.empty()) return;
+  const std::lock_guard writing(cubes_mutex_);
+  steps_.add(found);
+}
+
 void PlaceCounter::add(const QuantaBatch& batch) {
+  if (steps_.any()) add_cubes(batch);
   if (places_.empty()) return;
   std::vector<Place> found(places_.size());
   for (std::size_t i = 0; i < batch.quanta.size(); ++i) {

@@ -266,3 +266,21 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
       bounds("0", "5000") + E57Bytes::pose({"1", "0", "0", "0"}, {"-1e6", "-4000", "-4000"});
   check_equal(remarks().size(), 1);
 }
+
+TEST_CASE("coordinates at an end of 32-bit integers are cut off, and a single one is not") {
+  const auto remarks = [](const std::vector<std::int64_t>& y, std::int64_t greatest) {
+    E57Bytes file;
+    const std::vector<double> others(y.size());
+    file.scans = {e57_scan(others, others, others)};
+    file.scans[0].fields[1] =
+        E57Bytes::integer("cartesianY", -2147483648, greatest, y, "scale=\"0.001\" offset=\"5\"");
+    return read_scans(file).info.remarks;
+  };
+  constexpr std::int64_t kEnd = 2147483647;
+  const std::vector<Message> cut = remarks({1, kEnd, -2147483648, kEnd, kEnd, 7}, kEnd);
+  REQUIRE(cut.size() == 1);
+  check_equal(cut[0].code, "cut-off");
+  check_says(cut[0].text, "scan 1 ... 3 points at the greatest y");
+  CHECK(remarks({1, kEnd, -2147483648, 7}, kEnd).empty());
+  CHECK(remarks({1, kEnd, kEnd, 7}, 2 * kEnd).empty());
+}

@@ -229,6 +229,29 @@ TEST_CASE("withheld points of all formats are left out and counted, or kept") {
   CHECK(flags->overlap == scan.flags.overlap);
 }
 
+TEST_CASE("a store has no classes where all points with a class are left out") {
+  const ScratchFolder folder;
+  LasBytes las;
+  las.minor = 4;
+  las.format = 6;
+  las.scale = {0.001, 0.001, 0.001};
+  las.offset = {0, 0, 0};
+  las.points.clear();
+  const bool far = GENERATE(false, true);
+  for (std::int32_t i = 0; i < 300; ++i) {
+    const bool classed = i % 3 == 1;
+    las.points.push_back({i, classed && far ? 50'000 : 0, 0});
+    las.bytes_of_class.push_back(classed ? 7 : 0);
+    las.bytes_of_flags.push_back(classed && !far ? 4 : 0);
+  }
+  put_bytes(folder / "a.las", las.build());
+  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
+  options.near = folder.write("path.txt", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1\n");
+  options.within = 10;
+  check_equal(convert_quietly(options).points, std::uint64_t{200});
+  CHECK_FALSE(StoreReader(options.output).has_classes());
+}
+
 TEST_CASE("the message on withheld points is a note up to one of a hundred, else a warning") {
   const ScratchFolder folder;
   FlaggedScan scan(6, 300);

@@ -1,6 +1,8 @@
 // Stores of the points near a path: what they keep, and what they say of it.
 #include <algorithm>
 #include <cstdio>
+#include <limits>
+#include <tuple>
 
 #include "support/bytes/laz/laz_bytes.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
@@ -144,13 +146,32 @@ TEST_CASE("files are passed over by their bounds where these are to be trusted")
   CHECK((by_source(store) == points));
   check_equal(points.front().source, std::uint64_t{70});
   CHECK(store.metadata().near->unread_bytes > 0);
+
+  // Bounds that no writer filled in say nothing.
+  const auto unread = [&](double lo, double hi, unsigned axes) {
+    std::string bytes = las_at(10'000, 70);
+    for (unsigned k = 0; k < axes; ++k) {
+      LasBytes::put(bytes, 179 + 16 * k, hi);
+      LasBytes::put(bytes, 187 + 16 * k, lo);
+    }
+    folder.write("a.las", bytes);
+    ConversionOptions near = near_of(folder, {{200, -200, 0}}, 1, {folder / "a.las"});
+    near.trust_bounds = true;
+    return convert_quietly(near).unread_points;
+  };
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [lo, hi, axes] : std::vector<std::tuple<double, double, unsigned>>{
+           {1e300, -1e300, 3}, {2, 1, 1}, {kNaN, kNaN, 2}, {0, 0, 3}, {0, 0, 1}}) {
+    CAPTURE(lo, hi, axes);
+    check_equal(unread(lo, hi, axes), std::uint64_t{0});
+  }
 }
 
 namespace {
 
 /// A COPC file of three nodes with a chunk each: the root's points are all over the cube, the two
-/// others fill one of its corners each.
-std::string copc_bytes(bool sound = true) {
+/// others fill one of its corners each. last_key: place along x of the last one, of eight.
+std::string copc_bytes(bool sound = true, std::int32_t last_key = 7) {
   LazBytes laz = laz_bytes(6, 30);
   laz.las.minor = 4;
   laz.las.scale = {0.01, 0.01, 0.01};
@@ -167,7 +188,7 @@ std::string copc_bytes(bool sound = true) {
   laz.las.vlrs.insert(laz.las.vlrs.begin(), {"copc", 1, info});
   const std::vector<std::uint64_t> chunk_begins = laz.chunk_begins();
   std::string page;
-  const std::int32_t keys[3][4] = {{0, 0, 0, 0}, {3, 0, 0, 0}, {3, 7, 7, 7}};
+  const std::int32_t keys[3][4] = {{0, 0, 0, 0}, {3, 0, 0, 0}, {3, last_key, 7, 7}};
   for (std::size_t i = 0; i < 3; ++i) {
     std::string entry(32, '\0');
     for (unsigned k = 0; k < 4; ++k) LasBytes::put(entry, 4 * k, keys[i][k]);
@@ -213,4 +234,12 @@ TEST_CASE("a damaged COPC hierarchy is not used, and said to be so") {
   const ConversionReport report = convert_quietly(heard);
   check_equal(report.unread_points, std::uint64_t{0});
   check_says(said, "COPC hierarchy is damaged ... read without the hierarchy");
+}
+
+TEST_CASE("a node of COPC outside of the cube of its file is damage") {
+  const ScratchFolder folder;
+  folder.write("a.copc.laz", copc_bytes(true, 8));
+  const ConversionOptions options =
+      near_of(folder, {{0.2, 0.2, 0.2}}, 1.5, {folder / "a.copc.laz"});
+  check_equal(convert_quietly(options).unread_points, std::uint64_t{0});
 }

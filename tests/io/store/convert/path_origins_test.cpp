@@ -281,6 +281,20 @@ TEST_CASE("GPS times that cannot be those of a recording are refused with the fi
   check_says(conversion_refusal<InputError>(scan.options), "finite GPS time");
 }
 
+TEST_CASE("an input of which all points are left out does not lack GPS times") {
+  TimedScan scan;
+  scan.las.points = {{0, 90'000, 0}, {0, 90'000, 0}, {0, 90'000, 0}, {0, 90'000, 0}};
+  put_bytes(scan.folder / "far.las", scan.las.build());
+  scan.options.inputs = {scan.folder / "far.las", scan.folder / "a.las"};
+  scan.options.near = scan.folder.write("near.txt", "0 0 0 0 0 0 0 1\n");
+  scan.options.within = 10;
+  const ConversionReport report = convert_quietly(scan.options);
+  CHECK(codes_told(report).empty());
+  check_equal(report.origins_path->without_time, 0);
+  scan.options.inputs = {scan.folder / "far.las"};
+  check_says(conversion_refusal<InputError>(scan.options), "none of the 4 points ... within 10");
+}
+
 TEST_CASE("inputs without GPS times have no origins by a path") {
   TimedScan scan;
   write_ply(scan.folder / "b.ply", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});

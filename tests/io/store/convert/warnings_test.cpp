@@ -3,6 +3,7 @@
 #include <fstream>
 #include <functional>
 #include <random>
+#include <set>
 
 #include "core/util/format.hpp"
 #include "io/store/convert/convert.hpp"
@@ -259,6 +260,247 @@ TEST_CASE("a strict conversion tells all warnings and leaves nothing behind") {
   CHECK_FALSE(fs::exists(folder.folder / "out.h5.partial"));
 }
 
+namespace {
+
+using Round = std::function<Vec3(const Vec3&)>;
+
+/// A road of 40 x 8 m with a fence on either side, as a scanner sees them.
+std::vector<Vec3> street(std::size_t points, const Vec3& at, const Round& round) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> share(0, 1);
+  std::vector<Vec3> out;
+  for (std::size_t i = 0; i < points; ++i) {
+    const double x = 40 * share(random), y = 8 * share(random), z = 0.05 * share(random);
+    const bool fence = i % 3 == 0;
+    out.push_back(round(at + Vec3{x, fence ? (y < 4 ? 0.2 : 7.8) + z : y, fence ? y / 3 : z}));
+  }
+  return out;
+}
+
+double to(double value, double step, double offset = 0) {
+  return std::round((value - offset) / step) * step + offset;
+}
+
+/// One point for each place of a grid of 60 x 60 on a hill, turned about z.
+std::vector<Vec3> terrain(double step, double turn, const Vec3& at) {
+  std::vector<Vec3> out;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 60; ++j) {
+      const double x = step * i, y = step * j;
+      out.push_back(at + Vec3{std::cos(turn) * x - std::sin(turn) * y,
+                              std::sin(turn) * x + std::cos(turn) * y,
+                              3 * std::sin(0.11 * i) * std::cos(0.07 * j)});
+    }
+  }
+  return out;
+}
+
+/// The centres of the voxels that hold points.
+std::vector<Vec3> voxels(const std::vector<Vec3>& points, double step) {
+  std::set<std::array<std::int64_t, 3>> places;
+  for (const Vec3& p : points) {
+    places.insert({std::llround(p.x / step), std::llround(p.y / step), std::llround(p.z / step)});
+  }
+  std::vector<Vec3> out;
+  for (const auto& [x, y, z] : places) {
+    out.push_back({step * static_cast<double>(x), step * static_cast<double>(y),
+                   step * static_cast<double>(z)});
+  }
+  return out;
+}
+
+struct SteppedScan {
+  Folder folder;
+  ConversionOptions options = folder.options({});
+
+  SteppedScan() { options.overwrite = true; }
+
+  void add_text(const std::string& name, const std::vector<Vec3>& points) {
+    std::string lines;
+    for (const Vec3& p : points) {
+      lines += format_number(p.x) + " " + format_number(p.y) + " " + format_number(p.z) + "\n";
+    }
+    put_bytes(folder.folder / name, lines);
+    options.inputs.push_back(folder.folder / name);
+  }
+
+  /// Adds points that the pose of their scan turns about z.
+  void add_ptx(const std::string& name, const std::vector<Vec3>& points, double turn) {
+    const std::string x =
+        format_number(std::cos(turn)) + " " + format_number(std::sin(turn)) + " 0";
+    const std::string y =
+        format_number(-std::sin(turn)) + " " + format_number(std::cos(turn)) + " 0";
+    std::string text = std::to_string(points.size()) + "\n1\n7 8 9\n" + x + "\n" + y + "\n0 0 1\n" +
+                       x + " 0\n" + y + " 0\n0 0 1 0\n7 8 9 1\n";
+    for (const Vec3& p : points) {
+      text += format_number(p.x) + " " + format_number(p.y) + " " + format_number(p.z) + " 0.5\n";
+    }
+    put_bytes(folder.folder / name, text);
+    options.inputs.push_back(folder.folder / name);
+  }
+
+  void add_las(const std::string& name, const std::vector<Vec3>& points) {
+    std::vector<Quantum> quanta;
+    for (const Vec3& p : points) {
+      Quantum& q = quanta.emplace_back();
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double steps =
+            (p[static_cast<int>(k)] - kMillimetres.offset[k]) / kMillimetres.scale[k];
+        q[k] = static_cast<std::int32_t>(std::lround(steps));
+      }
+    }
+    options.inputs.push_back(folder.add(name, quanta));
+  }
+
+  /// The steps that the store has.
+  std::array<double, 3> steps() {
+    warnings = convert_quietly(options).warnings;
+    const StoreReader store(options.output);
+    CHECK(faults_of(store).empty());
+    options.inputs.clear();
+    return store.metadata().steps;
+  }
+
+  std::vector<Message> warnings;
+};
+
+}  // namespace
+
+TEST_CASE("a store has the steps to which coordinates were rounded, whatever the offset") {
+  const Vec3 at{300, 500, 3};
+  const auto [round, x, y, z] = GENERATE(table<Round, double, double, double>({
+      {[](const Vec3& p) {
+         return Vec3{p.x, to(p.y, 0.5), p.z};
+       },
+       0, 0.5, 0},
+      {[](const Vec3& p) {
+         return Vec3{p.x, to(p.y, 0.5, 0.37), p.z};
+       },
+       0, 0.5, 0},
+      {[](const Vec3& p) {
+         return Vec3{to(p.x, 0.3048), to(p.y, 0.3048), p.z};
+       },
+       0.3048, 0.3048, 0},
+      {[](const Vec3& p) {
+         return Vec3{to(p.x, 0.5), to(p.y, 0.25, 0.1), to(p.z, 0.07)};
+       },
+       0.5, 0.25, 0.07},
+      {[](const Vec3& p) {
+         return Vec3{static_cast<float>(p.x), to(p.y, 0.1), static_cast<float>(p.z)};
+       },
+       0, 0.1, 0},
+  }));
+  SteppedScan scan;
+  const bool as_text = GENERATE(false, true);
+  const std::vector<Vec3> points = street(20'000, at, round);
+  if (as_text) {
+    scan.add_text("a.xyz", points);
+  } else {
+    scan.add_las("a.las", points);
+  }
+  CAPTURE(as_text, x, y, z);
+  const std::array expected{x, y, z};
+  const std::array<double, 3> found = scan.steps();
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (expected[k] > 0) CHECK(found[k] == Approx(expected[k]).epsilon(1e-3));
+    if (expected[k] == 0) CHECK((found[k] > 0 && found[k] <= 0.001));
+  }
+  check_equal(number(only(scan.warnings, "lost-digits"), "raster"), 0);
+}
+
+TEST_CASE("steps are those of the coarsest input, of the kept points and of the store") {
+  const Vec3 at{300, 500, 3};
+  const auto fine = street(9000, at, [](const Vec3& p) { return p; });
+  const auto coarse = street(9000, at + Vec3{0, 20, 0}, [](const Vec3& p) {
+    return Vec3{p.x, to(p.y, 0.5), p.z};
+  });
+  SteppedScan scan;
+  scan.add_las("fine.las", fine);
+  scan.add_las("coarse.las", coarse);
+  CHECK(scan.steps()[1] == Approx(0.5));
+  scan.options.inputs = {scan.folder.folder / "fine.las", scan.folder.folder / "coarse.las"};
+  scan.options.near = scan.folder.folder.write("p.txt", "1 0 0 310 0 1 0 505 0 0 1 3 0 0 0 1\n");
+  scan.options.within = 5;
+  CHECK(scan.steps()[1] == Approx(0.001));
+  scan.options.near.clear();
+  scan.options.within = 0;
+  scan.add_text("fine.xyz", fine);
+  scan.options.scale = 0.25;
+  CHECK(scan.steps() == std::array{0.25, 0.25, 0.25});
+  // Every hundredth point may have kept its digits.
+  auto mixed = coarse;
+  for (std::size_t i = 0; i < mixed.size(); i += 120) mixed[i].y += 0.003;
+  scan.options.scale.reset();
+  scan.add_las("mixed.las", mixed);
+  CHECK(scan.steps()[1] == Approx(0.5));
+}
+
+TEST_CASE("steps are those that a scan has before its pose turns it") {
+  SteppedScan scan;
+  scan.add_ptx("a.ptx",
+               street(20'000, {30, 50, 3},
+                      [](const Vec3& p) {
+                        return Vec3{p.x, to(p.y, 0.5, 0.37), p.z};
+                      }),
+               0.6);
+  CHECK(scan.steps()[0] == Approx(0.5).epsilon(1e-3));
+  check_equal(number(only(scan.warnings, "lost-digits"), "raster"), 0);
+  scan.add_ptx("b.ptx", terrain(1, 0, {30, 50, 3}), 0.6);
+  for (const double step : scan.steps()) CHECK(step <= 0.001);
+  check_equal(number(only(scan.warnings, "lost-digits"), "raster"), 1);
+}
+
+TEST_CASE("regular rasters have steps and did not lose them") {
+  const Vec3 at{300, 500, 3};
+  const auto fine = street(60'000, at, [](const Vec3& p) { return p; });
+  const std::vector<Vec3> points =
+      GENERATE_COPY(terrain(1, 0, at), terrain(0.5, 0, at + Vec3{0.37, 0.1, 0}),
+                    terrain(1, std::acos(0.5), at), terrain(2, std::atan(1), at),
+                    terrain(1, std::atan(0.75), at), voxels(fine, 0.5), voxels(fine, 0.25));
+  SteppedScan scan;
+  const bool as_text = GENERATE(false, true);
+  if (as_text) {
+    scan.add_text("a.xyz", points);
+  } else {
+    scan.add_las("a.las", points);
+  }
+  for (const double step : scan.steps()) CHECK(step <= 0.01);
+  for (const Message& warning : scan.warnings) {
+    check_equal(warning.code, "lost-digits");
+    check_equal(number(warning, "raster"), 1);
+  }
+}
+
+TEST_CASE("points that were rounded are no raster, however few there are to a step") {
+  const std::size_t points = GENERATE(1500, 6000, 60'000);
+  SteppedScan scan;
+  scan.add_las("a.las", street(points, {300, 500, 3}, [](const Vec3& p) {
+                 return Vec3{to(p.x, 0.25), to(p.y, 0.25), to(p.z, 0.25)};
+               }));
+  const std::array<double, 3> found = scan.steps();
+  CHECK(found[0] == Approx(0.25));
+  CHECK(found[1] == Approx(0.25));
+}
+
+TEST_CASE("coordinates that are cut off are counted, and a single greatest one is not") {
+  const Folder folder;
+  std::vector<Quantum> points = scan(2000, 1, 2'147'000'000, 2'147'483'646);
+  const auto cut = [&](std::size_t count, double step) {
+    std::vector<Quantum> ends = points;
+    for (std::size_t i = 0; i < count; ++i) ends[3 * i][1] = 2'147'483'647;
+    Quantisation quantisation = kMillimetres;
+    quantisation.scale[1] = step;
+    return folder.warnings({folder.add("a.las", ends, quantisation)});
+  };
+  CHECK(cut(1, 0.001).empty());
+  const Message some = only(cut(40, 0.001), "cut-off");
+  check_says(some.text, "a.las: has 40 points at the greatest y");
+  check_equal(number(some, "y"), 40);
+  check_equal(number(some, "x"), 0);
+  // A scale that was computed from the points has their outermost ones at the ends.
+  CHECK(cut(40, 0.00101234567891).empty());
+}
+
 TEST_CASE("coordinates that lost their digits are warned of with their step") {
   const Folder folder;
   std::mt19937 random(7);
@@ -277,11 +519,11 @@ TEST_CASE("coordinates that lost their digits are warned of with their step") {
     return [step](double v) { return std::round(v / step) * step; };
   };
   const Message whole = only(text(500'000, 5.4e6, to(1)), "lost-digits");
-  check_says(whole.text, "coordinates x, y are multiples of 1 m, 1 m");
+  check_says(whole.text, "coordinates x, y come in steps of 1 m, 1 m");
   check_equal(number(only(text(500'000, 5.4e6, to(10)), "lost-digits"), "step"), 10);
   const auto single = [](double v) { return static_cast<double>(static_cast<float>(v)); };
   const Message floats = only(text(500'000, 5.4e6, single), "lost-digits");
-  check_says(floats.text, "x, y are multiples of 0.03125 m, 0.5 m");
+  check_says(floats.text, "x, y come in steps of 0.03125 m, 0.5 m");
   CHECK(text(500'000, 5.4e6, to(0.01)).empty());
   CHECK(text(0, 0, single).empty());
   // A flat scan loses nothing along its height.
