@@ -277,6 +277,8 @@ void warn_of_large_radius(const Question& question, MessageLog& log) {
 
 /// A step of coordinates is known to 1 %.
 constexpr double kExact = 0.99;
+/// Metres: whole centimetres are usual, and a coarser step causes "lost-digits" at the conversion.
+constexpr double kUsualStep = 0.01 * (1 + 1e-6);
 
 /// Compares the radius with the steps of the coordinates: those of the store, or the coarser ones
 /// to which the scans were rounded before. One of the two warnings says it.
@@ -288,7 +290,7 @@ void check_steps(const Question& question, MessageLog& log) {
   double step = *std::max_element(scale, scale + 3);
   std::string axes, steps;
   for (std::size_t k = 0; k < 3; ++k) {
-    step = std::max(step, question.steps[k]);
+    if (question.steps[k] > kUsualStep * question.metre) step = std::max(step, question.steps[k]);
     if (question.steps[k] < kExact * radius || question.steps[k] == 0) continue;
     axes += std::string(axes.empty() ? "" : ", ") + "xyz"[k];
     steps += (steps.empty() ? "" : ", ") + length_text(question.steps[k], question.unit);
