@@ -70,6 +70,9 @@ struct PoseLabels {
   std::vector<double> time = {};       ///< seconds, in the time scale of the file
   std::vector<std::string> name = {};  ///< a name for the reader, or the file's own index
   std::vector<double> station = {};    ///< metres along an alignment, which are not the way driven
+  /// How `clearway trajectory` made the file of another one, whose name and number of poses it
+  /// says; empty for other files.
+  std::string made_by = {};
 };
 
 /// Reads the poses of a trajectory in one of the formats of TrajectoryFormat. They belong to a

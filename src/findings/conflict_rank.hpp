@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// The shorter of the conflict's own shifts; infinity where neither side frees it.
+/// The shorter of the conflict's own shifts; infinity where it has none.
 inline double least_own_shift(const Conflict& c) {
   const double none = std::numeric_limits<double>::infinity();
   return std::min(c.own_shift_left.value_or(none), c.own_shift_right.value_or(none));

@@ -85,6 +85,7 @@ Json json_of_place(const ReportFacts& facts, std::size_t pose, const ModelAxes& 
 struct Bend {
   double radius = std::numeric_limits<double>::infinity();
   std::size_t pose = 0;
+  double over = 0;  ///< length of path between the outer two of the places
 };
 
 double radius_through(const Pose& a, const Pose& b, const Pose& c) {
@@ -111,7 +112,7 @@ Bend tightest_bend(std::span<const Pose> poses, double arm) {
     if (after == poses.size()) break;
     if (chainage[i] - chainage[before] < arm) continue;
     const double radius = radius_through(poses[before], poses[i], poses[after]);
-    if (radius < best.radius) best = {radius, i};
+    if (radius < best.radius) best = {radius, i, chainage[after] - chainage[before]};
   }
   return best;
 }
@@ -128,7 +129,9 @@ Json json_of_bend(const ReportFacts& facts, const ModelAxes& axes) {
   const Bend bend = tightest_bend(facts.poses, std::max(metre, longest / 4));
   if (!(bend.radius < kStraight * metre)) return {};
   const double at = path_length(facts.poses.first(bend.pose + 1));
-  return {{"radius", bend.radius}, {"chainage", facts.options.conflicts.chainage_start + at}};
+  return {{"radius", bend.radius},
+          {"over", bend.over},
+          {"chainage", facts.options.conflicts.chainage_start + at}};
 }
 
 }  // namespace

@@ -73,6 +73,23 @@ std::optional<double> spacing_of(const ResultHeader& header) {
   return header.notes.model_spacing;
 }
 
+/// The first scans that the store was made of; there may be thousands.
+Json names_of_sources(const StoreMetadata& store) {
+  constexpr std::size_t kMostNames = 10;
+  Json out = Json::array();
+  for (const SourceFile& source : store.sources) {
+    if (out.size() == kMostNames) break;
+    out.push_back(source.name);
+  }
+  return out;
+}
+
+/// The days of the scans; null where their files do not say any.
+Json json_of(const ScanDates& dates) {
+  if (!dates.known()) return {};
+  return {{"first", dates.first}, {"last", dates.last}};
+}
+
 Json json_of_inputs(const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
@@ -89,18 +106,20 @@ Json json_of_inputs(const ReportFacts& facts) {
   }
   if (!header.bodies.empty()) model["bodies"] = json_of_bodies(facts);
   return {{"result",
-           {{"name", options.result_name},
-            {"hash", hash_text(facts.result.reader().recorded_hash<Collisions>())}}},
+           {{"name", options.result_name}, {"hash", hash_text(facts.result.reader().identity())}}},
           {"environment",
            {{"name", options.environment_name},
             {"points", header.environment_points},
             {"hash", hash_text(header.environment_hash)},
             {"files", facts.store.reader().metadata().sources.size()},
+            {"sources", names_of_sources(facts.store.reader().metadata())},
+            {"scanned", json_of(facts.store.reader().metadata().dates)},
             {"box", facts.store.box()},
             {"crs_wkt", header.crs_wkt}}},
           {"model", std::move(model)},
           {"trajectory",
            {{"name", options.trajectory_name},
+            {"made_by", options.labels.made_by},
             {"poses", header.poses},
             {"hash", hash_text(header.trajectory_hash)},
             {"chainage_start", facts.options.conflicts.chainage_start},
@@ -198,7 +217,7 @@ void add_finding(Json& json, const Column& column, const Row& row) {
   }
 }
 
-/// What frees the vehicle from a conflict, in words.
+/// What frees the vehicle from a conflict, in sentences.
 std::string remedy_of(const Conflict& conflict, const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   RemedyWords how{*facts.conflicts, symbol_of(unit_of(header))};

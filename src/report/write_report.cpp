@@ -18,6 +18,7 @@
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
@@ -55,14 +56,14 @@ std::vector<double> classes_of(const Result& result, const std::vector<double>& 
     throw UsageError("classes: expected one to three distances, each larger than the one before");
   }
   if (asked.back() < query.radius) {
-    throw UsageError("classes: the last is " + format_number(asked.back()) +
-                     ", below the radius of " + format_number(query.radius) +
+    throw UsageError("classes: the last is " + format_length(asked.back()) +
+                     ", below the radius of " + format_length(query.radius) +
                      "; expected at least the radius, so that every colliding point is in a class");
   }
   for (const double below : asked) {
     if (below <= query.clearance || below == query.radius) continue;
-    throw UsageError("classes: the result has no distances up to " + format_number(below) +
-                         ", only clearances below " + format_number(query.clearance),
+    throw UsageError("classes: the result has no distances up to " + format_length(below) +
+                         ", only clearances below " + format_length(query.clearance),
                      Remedy::kAskForClearance);
   }
   return asked;
@@ -183,6 +184,8 @@ class Report {
         conflicts = find_conflicts(result_, poses_, find, &found_here);
       }
     }
+    add_warnings(conflict_warnings(conflicts, symbol_of(unit_of(result_.reader().header()))),
+                 answer_.warnings);
     if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
     if (options_.ledger && options_.ledger->conflicts.size() != conflicts.listed.size()) {
       throw UsageError("ledger: it judges " +

@@ -86,7 +86,7 @@ void CorridorCheck::check(std::span<const MovingBody> bodies, bool between_poses
   for (const MovingBody& body : bodies) {
     const Need need = need_of(body.poses, body.path_pose, farthest_of(body.model), between_poses);
     const std::string name =
-        body.name.empty() ? "the question" : "the question about body " + std::string(body.name);
+        body.name.empty() ? "the question" : "the question about " + body_words(body.name);
     refuse(need, reach, name);
   }
 }

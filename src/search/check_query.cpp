@@ -27,7 +27,7 @@ double metre_of(const StoreReader& store) {
 namespace {
 
 [[noreturn]] void refuse_body(const Body& body, const std::string& what) {
-  throw InputError("body " + body.name + ": " + what);
+  throw InputError(body_words(body.name) + ": " + what);
 }
 
 void check_name(const Body& body, std::set<std::string>& names) {
@@ -51,7 +51,7 @@ void check_poses(const Body& body, const Query& query) {
       refuse_body(body, "its poses are not in the order of the path");
     }
     if (query.between_poses && i > 0 && body.path_pose[i] != body.path_pose[i - 1] + 1) {
-      throw UsageError("body " + body.name + " has no pose between poses " +
+      throw UsageError(body_words(body.name) + " has no pose between poses " +
                        std::to_string(body.path_pose[i - 1]) + " and " +
                        std::to_string(body.path_pose[i]) +
                        " of the path, so that its way there is not known: search at poses, or "
@@ -223,7 +223,7 @@ void check_model_size(const std::string& what, const Model& of) {
 /// A height above the floor exists only where the rotation has an inverse.
 void check_floor(const MovingBody& body, bool is_alone) {
   if (!body.floor) return;
-  const std::string what = is_alone ? "" : "body " + std::string(body.name) + ": ";
+  const std::string what = is_alone ? "" : body_words(body.name) + ": ";
   if (!std::isfinite(*body.floor)) {
     throw UsageError(what + "the floor has to be a finite number of metres");
   }
@@ -307,7 +307,7 @@ void check_sizes(const Query& query) {
   }
   for (const MovingBody& body : moving_bodies(query)) {
     const bool is_alone = query.bodies.empty();
-    check_model_size(is_alone ? "the model" : "body " + std::string(body.name), body.model);
+    check_model_size(is_alone ? "the model" : body_words(body.name), body.model);
     check_floor(body, is_alone);
   }
 }

@@ -116,11 +116,13 @@ std::string facts_text(const ordered_json& facts) {
   return text;
 }
 
-void write_points(const Model& model, const std::filesystem::path& path) {
+/// in_metres: whether the unit of the model's file is known, so that the points are in metres.
+void write_points(const Model& model, bool in_metres, const std::filesystem::path& path) {
   const File file = File::create(path);
   PlyOutput header{.points = model.vertices.size()};
+  if (in_metres) header.comments.push_back(std::string(kUnitComment) + "m");
   if (model.spacing > 0) {
-    header.comment = std::string(kSpacingComment) + format_number(model.spacing);
+    header.comments.push_back(std::string(kSpacingComment) + format_number(model.spacing));
   }
   PlyWriter writer(file, header);
   writer.write(model.vertices);
@@ -231,7 +233,8 @@ void run_model(const ModelCommand& options) {
     if (model.spacing > 0) facts["spacing"] = model.spacing;
     facts["points"] = model.vertices.size();
     if (output) {
-      write_points(model, output->partial());
+      const bool in_metres = options.how.unit.is_known() || input.declared_unit.is_known();
+      write_points(model, in_metres, output->partial());
       output->publish();
     }
   } else {
@@ -275,7 +278,9 @@ void add_model(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "model", "Say what is in a model's file, sample a mesh to points, make a box or a gauge");
   add_reading(*command, *options);
-  command->add_option("-o,--output", options->output, "The model's points in metres, a PLY file")
+  command
+      ->add_option("-o,--output", options->output,
+                   "The model's points, a PLY file, in metres where the unit of IN is known")
       ->type_name("FILE");
   CLI::Option* spacing = options->lengths.add(
       *command, "--spacing,--model-spacing", options->how.spacing,

@@ -19,6 +19,7 @@
 #include "io/files/json.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/floor_facts.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -48,7 +49,8 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
                    });
     text += fmt::format("{:.2f} {} along the path)", path.chainage[pose], unit);
   }
-  if (const std::string body = body_of(answer, place); !body.empty()) text += ", body " + body;
+  if (const std::string body = body_of(answer, place); !body.empty())
+    text += ", " + body_words(body);
   if (has_xyz(*place)) {
     text += fmt::format(", point {:.3f} {:.3f} {:.3f}", place->xyz.x, place->xyz.y, place->xyz.z);
   }
@@ -76,7 +78,7 @@ std::string nearest_text(const Answer& answer, const PathWords& path, const std:
                        unit, place_text(answer, nearest, path, unit));
   }
   const double asked = std::max(answer.parameters.profile, answer.parameters.clearance);
-  return asked > 0 ? fmt::format("; none is within {} {}", asked, unit) : "";
+  return asked > 0 ? fmt::format("; none is within {} {}", format_length(asked), unit) : "";
 }
 
 /// A clause about ignored points, such as ", with 12 points ignored (class 2), 3 of which would
@@ -141,8 +143,9 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
                                 const std::string& unit) {
   const ErrorBudget& budget = *answer.budget;
   const double margin = answer.parameters.radius;
+  const std::string asked = format_length(margin);
   const std::string within = fmt::format("{} {} (the margin of {} {} and {} {} of errors)",
-                                         format_brief(budget.near_radius(margin)), unit, margin,
+                                         format_brief(budget.near_radius(margin)), unit, asked,
                                          unit, format_brief(budget.clear()), unit);
   const std::string ignored = ignored_clause(answer) + floor_clause(answer, unit);
   const std::string points = counted(answer.colliding_points, "point is", "points are") +
@@ -180,7 +183,7 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
 /// The verdict with the finding behind it.
 std::string finding_text(const Answer& answer, const PathWords& path, const std::string& unit) {
   if (answer.budget) return finding_with_budget(answer, path, unit);
-  const std::string limit = fmt::format("{} {}", answer.parameters.radius, unit);
+  const std::string limit = format_length(answer.parameters.radius) + " " + unit;
   const std::string ignored = ignored_clause(answer) + floor_clause(answer, unit);
   const std::string none = std::string("no ") + (ignored.empty() ? "environment" : "other") +
                            " point is closer than " + limit + " to the model on its way";

@@ -89,7 +89,7 @@ void write_origins(const Scene& scene, const File& file) {
 void write_model(const Scene& scene, const File& file) {
   PlyWriter writer(file, {.points = scene.model.size(),
                           .coordinates = PlyCoordinates::kFloat32,
-                          .comment = "Clearway scene " + std::string(name_of(scene.kind))});
+                          .comments = {"Clearway scene " + std::string(name_of(scene.kind))}});
   writer.write(scene.model);
   writer.finish();
 }

@@ -13,6 +13,7 @@
 #include "core/util/format.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/markup_text.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway::campaign {
 namespace {
@@ -137,8 +138,17 @@ std::string cell_word(const TaskLook& look) {
   }
 }
 
-/// The side on which the least distance is, such as ", left"; empty where that is not known.
+/// A length as it was written, with a blank before its unit: "50 cm" for "50cm".
+std::string spaced_length(std::string length) {
+  const std::size_t unit = length.find_first_not_of("0123456789.+-eE");
+  if (unit != std::string::npos && unit > 0 && length[unit] != ' ') length.insert(unit, 1, ' ');
+  return length;
+}
+
+/// The side on which the least distance is, such as ", left"; empty where that is not known, and
+/// for a point inside the vehicle, which has no side of it.
 std::string cell_side(const ordered_json& facts) {
+  if (facts["least"]["distance"].get<double>() < 0) return "";
   const ordered_json side = facts.value("least_side", ordered_json());
   return side.is_string() ? ", " + side.get<std::string>() : "";
 }
@@ -168,8 +178,8 @@ std::string cell_distance(const Task& task, const TaskLook& look) {
   const auto radius = task.question["radius"].get<double>();
   const double asked = std::max(
       {radius, task.question["clearance"].get<double>(), task.question["profile"].get<double>()});
-  return (outcome != Outcome::kConflict ? "≥ " + format_number(asked)
-                                        : "< " + format_number(radius)) +
+  return (outcome != Outcome::kConflict ? "≥ " + format_length(asked)
+                                        : "< " + format_length(radius)) +
          " " + task.unit;
 }
 
@@ -344,7 +354,7 @@ class CampaignPage {
   }
 
   void table(const std::string& radius) {
-    const std::string title = "Radius " + markup_text(radius) + unit_of(radius);
+    const std::string title = "Radius " + markup_text(spaced_length(radius)) + unit_of(radius);
     text_ += "<section>\n<h2>" + title +
              "</h2>\n<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"" + title +
              "\">\n<table class=\"matrix" + (routes_.size() > kFewRoutes ? " many" : "") +

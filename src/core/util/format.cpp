@@ -30,6 +30,10 @@ std::string counted(std::uint64_t count, const std::string& one, const std::stri
   return format_count(count) + " " + (count == 1 ? one : many.empty() ? one + "s" : many);
 }
 
+std::string body_words(std::string_view name) {
+  return name == "body" ? "the body" : "body " + std::string(name);
+}
+
 std::string format_list(const std::vector<std::string>& texts) {
   std::string list;
   for (std::size_t i = 0; i < texts.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clearway {
@@ -16,6 +17,9 @@ std::string format_count(std::uint64_t count);
 /// A number with its noun, such as "1 point" or "78,439 points". many: the plural, if it is not
 /// `one` with an s.
 std::string counted(std::uint64_t count, const std::string& one, const std::string& many = {});
+
+/// A body of a vehicle in a sentence: "body left arm", and "the body" for one of that name.
+std::string body_words(std::string_view name);
 
 /// Texts as a list in a sentence, such as "times, names and stations".
 std::string format_list(const std::vector<std::string>& texts);

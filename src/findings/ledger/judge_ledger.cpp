@@ -194,7 +194,7 @@ class LedgerJudge {
       }
     }
     if (now.shift() > row.values.shift() + more) {
-      return change("the shift that frees it", row.values.shift(), now.shift());
+      return change("the shift that its own points need", row.values.shift(), now.shift());
     }
     constexpr std::array kTrims{"the trim on the left", "the trim on the right",
                                 "the trim from above", "the trim from below"};

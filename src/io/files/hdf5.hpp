@@ -163,6 +163,9 @@ Number read_number(const Id& object, const std::string& name, const std::string&
 }
 std::string read_text_attribute(const Id& object, const std::string& name, const std::string& file);
 
+/// Hashes the names and values of all attributes of an object, in the order of their names.
+std::uint64_t hash_of_attributes(const Id& object, const std::string& file);
+
 /// The chunks that Rows::read_chunks() read. Their memory is used again by the next call.
 class StoredChunks {
  public:

@@ -119,6 +119,7 @@ bool read_as_mesh(ModelInput& input, bool with_faces) {
   MeshFile read = read_mesh(InputBuffer(std::move(file), InputBuffer::Access::kSeek), *format);
   if (format == MeshFormat::kPly && read.mesh.triangles.empty()) return false;
   input.mesh = std::move(read.mesh);
+  input.declared_unit = read.unit;
   input.remarks = std::move(read.remarks);
   if (with_faces) {
     take_single_points(input);

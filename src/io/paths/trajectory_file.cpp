@@ -32,9 +32,27 @@ std::string column_of(const PoseLabel<Type>& label) {
 
 }  // namespace
 
-void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress) {
+FileUnit TrajectoryFile::own_unit() const {
+  if (!crs.empty()) return FileUnit::exactly(metres_per_unit);
+  if (unit.is_known()) return unit;
+  return in_metres ? FileUnit::exactly(1) : FileUnit();
+}
+
+bool TrajectoryColumns::names_unit() const { return !symbol_of(unit).empty(); }
+
+namespace {
+
+void write_made_by(const std::string& made_by, TextWriter& out) {
+  if (!made_by.empty()) out << kMadeByComment << made_by << "\n";
+}
+
+}  // namespace
+
+void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress,
+                      const std::string& made_by) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
+  write_made_by(made_by, out);
   for (const Pose& pose : poses) {
     for (std::size_t row = 0; row < 3; ++row) {
       for (std::size_t k = 0; k < 3; ++k) out << pose.rotation[3 * row + k] << " ";
@@ -53,7 +71,12 @@ void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& label
                             Progress& progress) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
-  const std::string unit = columns.in_metres ? " [m]" : "";
+  const std::string unit = columns.names_unit() ? " [" + symbol_of(columns.unit) + "]" : "";
+  const UnitFactor written =
+      unit.empty()
+          ? UnitFactor(1)
+          : UnitFactor(columns.metres_per_unit, columns.unit.metres_in(columns.metres_per_unit));
+  write_made_by(labels.made_by, out);
   if (!columns.path_pose.empty()) out << "path_pose,";
   for_each_label([&](const auto& label) {
     if (!label.of(labels).empty()) out << column_of(label) << ",";
@@ -67,7 +90,7 @@ void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& label
     });
     const char* comma = "";
     for (const double coordinate : poses[i].translation) {
-      out << comma << coordinate;
+      out << comma << written(coordinate);
       comma = ",";
     }
     for (const double number : poses[i].rotation) out << "," << number;

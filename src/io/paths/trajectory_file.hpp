@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "clearway/pose.hpp"
@@ -28,6 +29,10 @@ struct TrajectoryFile : Remarks {
   bool in_metres = false;
   FileUnit unit = {};  ///< unit of the positions in the file, where a header or an option names it
   RotationSource rotations = RotationSource::kMatrices;
+
+  /// The unit that the file, its format or its CRS gives the positions; not known where they are in
+  /// the environment's unit because nothing names one.
+  FileUnit own_unit() const;
 };
 
 /// Reads a trajectory as read_trajectory() does, with details of the file.
@@ -41,17 +46,28 @@ const char* name_of(TrajectoryFormat format);
 struct TrajectoryColumns {
   /// Index of the path's pose, for each pose; no column where it is empty.
   std::span<const std::uint32_t> path_pose = {};
-  bool in_metres = false;  ///< whether the header says that of x, y and z
+  /// The unit in which x, y and z are written and which the header names. They are written as they
+  /// are, without a unit, where it is not known.
+  FileUnit unit = {};
+  double metres_per_unit = 1;  ///< metres per unit of the positions that are to be written
+
+  bool names_unit() const;
 };
 
 /// Writes a table of poses with a header, and with digits that read_trajectory() reads back to the
-/// same doubles. labels: a column for each list that is not empty. Throws ResourceError and
-/// Interrupted.
+/// same doubles. labels: a column for each list that is not empty, and a comment for made_by.
+/// Throws ResourceError and Interrupted.
 void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& labels,
                             const TrajectoryColumns& columns, const File& file, Progress& progress);
 
+/// Start of the comment in which a trajectory says how `clearway trajectory` made it of another
+/// one.
+inline constexpr std::string_view kMadeByComment = "# made by clearway trajectory ";
+
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
-/// read_trajectory() reads back to the same doubles. Throws ResourceError and Interrupted.
-void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress);
+/// read_trajectory() reads back to the same doubles. made_by: see PoseLabels; empty for none.
+/// Throws ResourceError and Interrupted.
+void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress,
+                      const std::string& made_by = {});
 
 }  // namespace clearway

@@ -10,6 +10,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/requantize.hpp"
 
 namespace clearway {
@@ -93,7 +94,7 @@ std::string quantisation_text(const Quantisation& quantisation) {
 /// A number with its unit, such as "0.1 m".
 std::string number_text(double value, FieldUnit unit) {
   const std::string symbol(symbol_of(unit));
-  return format_number(value) + (symbol.empty() ? "" : " " + symbol);
+  return format_length(value) + (symbol.empty() ? "" : " " + symbol);
 }
 
 /// What the question says of a field, in words.
@@ -162,8 +163,8 @@ std::string model_text(const ResultHeader& header) {
 
 std::string margins_text(const ResultHeader& header) {
   if (!header.budget) return "none";
-  return format_number(header.budget->clear()) + " m for clear, " +
-         format_number(header.budget->conflict()) + " m for conflict";
+  return format_length(header.budget->clear()) + " m for clear, " +
+         format_length(header.budget->conflict()) + " m for conflict";
 }
 
 class Differences {

@@ -88,6 +88,9 @@ class ResultReader {
   std::uint64_t clearances() const { return rows<Clearances>(); }
   std::uint64_t near() const { return rows<Nearby>(); }
   std::uint64_t profile_rows() const { return rows<ProfileRows>(); }
+  /// Hash of the question, the inputs and the answer. Results that differ in any of these have
+  /// different ones, whatever engine and device searched.
+  std::uint64_t identity() const;
   /// The hash of the recorded hashes of a table's columns; 0 where the result does not have it.
   template <typename Rows>
   std::uint64_t recorded_hash() const;

@@ -316,6 +316,7 @@ struct ResultReader::State {
         file(hdf5::open_file(path)),
         header(read_result_header(file, name)),
         findings(read_result_findings(file, name, header)),
+        attributes(hdf5::hash_of_attributes(file, name)),
         tables(TableReader<Collisions>(file, name, header),
                TableReader<Clearances>(file, name, header),
                TableReader<ProfileRows>(file, name, header),
@@ -338,6 +339,7 @@ struct ResultReader::State {
   hdf5::Id file;
   ResultHeader header;
   ResultFindings findings;
+  std::uint64_t attributes;  ///< hash of all of them, among which are the hashes of the tables
   std::tuple<TableReader<Collisions>, TableReader<Clearances>, TableReader<ProfileRows>,
              TableReader<Nearby>, TableReader<UnseenCubes>, TableReader<SweptCells>>
       tables;
@@ -369,6 +371,14 @@ const ResultFindings& ResultReader::findings() const { return state_->findings; 
 template <typename Rows>
 std::uint64_t ResultReader::rows() const {
   return state_->table<Rows>().rows();
+}
+
+std::uint64_t ResultReader::identity() const {
+  ColumnHashes all;
+  all.add_digest(state_->attributes);
+  // Their texts name files, which may be called otherwise the next time.
+  for (const Message& warning : findings().warnings) all.add(warning.code);
+  return all.digest();
 }
 
 template <typename Rows>

@@ -114,6 +114,16 @@ std::optional<FileUnit> file_unit_of(std::string_view name) {
   return unit != nullptr && unit->of_files ? std::optional(unit->file_unit()) : std::nullopt;
 }
 
+std::string symbol_of(const FileUnit& unit) {
+  const auto* const found = std::ranges::find_if(kNamed, [&](const NamedUnit& known) {
+    return known.of_files && known.any_foot == unit.is_any_foot() &&
+           are_same(unit.metres(), known.metres());
+  });
+  return found == kNamed.end() ? std::string() : std::string(found->symbol);
+}
+
+std::string format_length(double length) { return format_digits(length, 9); }
+
 std::string to_string(LengthUnit unit) { return of(unit).name; }
 
 LengthUnit length_unit_of(const std::string& name) {

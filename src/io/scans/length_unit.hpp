@@ -40,6 +40,17 @@ std::string file_unit_list();
 /// The unit of this name in which models and trajectories are read; nullopt for another name.
 std::optional<FileUnit> file_unit_of(std::string_view name);
 
+/// The symbol by which file_unit_of() finds a unit, for example "us-ft"; empty where it has none.
+std::string symbol_of(const FileUnit& unit);
+
+/// A length that somebody chose, for messages, such as "0.492125": all of its digits but those that
+/// converting units leaves behind.
+std::string format_length(double length);
+
+/// Start of the comment in PLY and OFF files of Clearway that says the unit of their coordinates. A
+/// name that file_unit_of() reads follows.
+inline constexpr std::string_view kUnitComment = "clearway unit ";
+
 /// The name of a unit: "unknown", "metre", "foot", "us-survey-foot" or "degree".
 std::string to_string(LengthUnit unit);
 /// The unit with a name that to_string() gives; kUnknown for any other text.

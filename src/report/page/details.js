@@ -28,7 +28,7 @@ function conflictFacts(conflict) {
     ...ledgerDetails(conflict),
     conflict.class && ["Certainty", conflict.class === "certain"
         ? "certain, even with the errors of the budget" : "possible: the errors leave it open"],
-    ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideWords(conflict.side))}`],
+    ["Where", `chainage ${chainageCell(conflict)} ${unitSymbol}${after(sideOfPlace(conflict))}`],
     conflict.station_from !== undefined && ["Station", `${stationsCell(conflict)} m`],
     conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${placeWords(conflict.obstacle_chainage)}`],
     conflict.body !== undefined && ["Body", conflict.body],
@@ -48,13 +48,7 @@ function conflictFacts(conflict) {
   if ((conflict.depth_source ?? null) !== null) {
     rows.push(["Depth", `${metres(conflict.depth)} to the nearest free point, an estimate`]);
   }
-  if (conflict.remedy) rows.push(["To pass", conflict.remedy]);
-  const shifts = [["left", conflict.own_shift_left], ["right", conflict.own_shift_right]]
-      .filter(([, shift]) => shift !== null)
-      .map(([side, shift]) => `${roundedUp(shift)} ${unitSymbol} to the ${side}`);
-  if (shifts.length > 0) {
-    rows.push(["Own shift", `at least ${shifts.join(" or ")}, which frees its own points`]);
-  }
+  if (conflict.remedy) rows.push(["Remedy", conflict.remedy]);
   if (page.facts.shifts) rows.push(["Frees it", freedWords(conflict)]);
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +

@@ -1,6 +1,8 @@
 // What the pages of a result and of a section share: the head, the answer, tables, and how a page starts.
 
 const capital = (text) => text ? text[0].toUpperCase() + text.slice(1) : text;
+/** With a capital letter and a sign at the end, which a question has already. */
+const asSentence = (text) => capital(text) + (/[.?!]$/.test(text) ? "" : ".");
 
 /** A link to each part of the page, the texts of the head and the foot, and the button that prints. */
 function buildHead() {
@@ -59,6 +61,22 @@ const chosenBy = (choose) => ({ tabindex: 0, onclick: choose, onkeydown: (event)
 const cellsOf = (columns, item) =>
     columns.map(({ cell, number, text }) =>
         make("td", { class: number ? "number" : text ? "text" : null }, cell(item)));
+
+/** How many bars below an axis have no room for their number; nothing where all have it. */
+const crowdedBars = (bars) => bars === 0 ? "" : make("p", { class: "note" },
+    `${plural(bars, "bar")} below the axis ${bars === 1 ? "has" : "have"} no room for a number; the table has all of them.`);
+
+/** A box that scrolls. An edge fades where columns or rows lie beyond it, so that no number seems to end there. */
+function scrollBox(kind, ...content) {
+  const box = make("div", { class: `scroll ${kind}` }, ...content);
+  const mark = () => {
+    box.classList.toggle("wider", box.scrollLeft + box.clientWidth < box.scrollWidth - 1);
+    box.classList.toggle("longer", box.scrollTop + box.clientHeight < box.scrollHeight - 1);
+  };
+  box.addEventListener("scroll", mark);
+  new ResizeObserver(mark).observe(box);
+  return box;
+}
 
 /** A table with a row of titles. */
 const listTable = (label, columns, rows) => make("table", { class: "list", "aria-label": label },

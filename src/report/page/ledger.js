@@ -113,6 +113,6 @@ function buildLedgerRows() {
     make("h3", {}, "Rows of the ledger without a conflict"),
     make("p", { class: "note" }, "A row is gone only if this run shows that nothing is there any more." +
          (left > 0 ? ` These are the first ${count(kShownRows)} of ${count(rows.length)}.` : "") + (done && ` ${done}`)),
-    make("div", { class: "scroll" }, listTable("Rows of the ledger without a conflict", columns,
+    scrollBox("", listTable("Rows of the ledger without a conflict", columns,
         shown.map((row) => make("tr", {}, cellsOf(columns, row))))));
 }

@@ -9,7 +9,7 @@ function measure() {
 /** The section of the route, with its answer as a sentence. */
 function buildRoute() {
   if (section.facts) {
-    byId("section-caution").before(make("p", { id: "section-sentence" }, `${capital(section.facts.sentence)}.`));
+    byId("section-caution").before(make("p", { id: "section-sentence" }, asSentence(section.facts.sentence)));
   }
   buildSection();
 }

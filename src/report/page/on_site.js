@@ -77,6 +77,6 @@ function vehicleBox() {
       factRow("Ends at", placeOnSite(last)),
       factRow("Drives", directionOnSite(page.facts.on_site)),
       factRow("Tightest bend", bend ? `radius of about ${bend.radius < 100 ? station(bend.radius) : shortLength(+bend.radius.toPrecision(3))} ` +
-                                      `at chainage ${placeWords(bend.chainage)}`
+                                      `at chainage ${placeWords(bend.chainage)}, measured over ${station(bend.over)} of path`
                                     : `none on ${station(path.length)} of path`));
 }

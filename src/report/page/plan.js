@@ -65,7 +65,12 @@ function conflictMarks() {
   });
 }
 
-/** The numbers of conflicts and unseen groups, the worst ones first; those without room become dots. */
+/** What became of the numbers without room; nothing where all have it. */
+const crowdedWords = (dots) => dots === 0 ? ""
+    : `${plural(dots, "number has", "numbers have")} no room beside others here, so that a dot stands for ` +
+      `${dots === 1 ? "it" : "each"}; the table has all of them.`;
+
+/** The numbers of conflicts and unseen groups, the worst ones first; those without room become dots. Returns how many. */
 function drawNumbers(context, painter, unitSize, places) {
   const order = [...conflictMarks(), ...groupMarks()].sort((a, b) => b.chosen - a.chosen ||
       b.first - a.first || (a.quiet ?? false) - (b.quiet ?? false) || a.rank - b.rank);
@@ -83,6 +88,7 @@ function drawNumbers(context, painter, unitSize, places) {
     drawNumber(context, at, at.mark, true, unitSize);
     places.push({ x: at[0], y: at[1], mark: at.mark });
   }
+  return dots.length;
 }
 
 /** The outline of a mark: a diamond and a triangle are as large as the disc in them. */
@@ -174,7 +180,7 @@ function paintPlan(canvas, unitSize) {
   marks.show(context);
   drawVehicleMark(context, painter, unitSize);
   plan.places = [];
-  drawNumbers(context, painter, unitSize, plan.places);
+  byId("plan-crowded").textContent = crowdedWords(drawNumbers(context, painter, unitSize, plan.places));
   drawScaleBar(context, painter.perMetre, unitSize);
   drawAxes(context, unitSize);
 }

@@ -69,6 +69,25 @@ function profileLine() {
   return pieces;
 }
 
+/** Round stations of the shown part of the path, each as [chainage, station]. */
+function stationTicks(most) {
+  const { chainage, labels: { station: stations } } = page.poses;
+  const [from, to] = [profile.from, profile.to].map(stationAt);
+  if (from === null || from === to) return [];
+  const out = [];
+  for (const value of ticks(Math.min(from, to), Math.max(from, to), most)) {
+    for (let i = 0; i + 1 < chainage.length; ++i) {
+      const [a, b] = [stations[i] - value, stations[i + 1] - value];
+      if (a === b || a * b > 0) continue;
+      const c = chainage[i] + a / (a - b) * (chainage[i + 1] - chainage[i]);
+      if (c < profile.from || c > profile.to) continue;
+      out.push([c, value]);
+      break;
+    }
+  }
+  return out;
+}
+
 function profileAxes() {
   const { width, height, left, right, bottom, top } = profile, out = [];
   for (const d of ticks(profile.low, profileTop(), 6)) {
@@ -82,10 +101,10 @@ function profileAxes() {
     out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: height - bottom,
                             class: "grid" }),
              make("text", { x: profileX(c), y: height - bottom + 16, class: "middle" }, String(c)));
-    if (stationAt(c) !== null) {
-      out.push(make("text", { x: profileX(c), y: top + 11, class: "middle station" },
-                    fixed(stationAt(c), profile.to - profile.from < 50 ? 2 : 0)));
-    }
+  }
+  for (const [c, value] of stationTicks(wide).filter(([at]) => profileX(at) > left + 20)) {
+    out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: top + 5, stroke: "#6b7280" }),
+             make("text", { x: profileX(c), y: top + 16, class: "middle station" }, String(value).replace("-", "−")));
   }
   if (page.poses.labels.station) {
     out.push(make("text", { x: width - right, y: top - 8, class: "end station" }, "station (m)"));
@@ -154,17 +173,22 @@ function profileBeyond() {
 function profileConflicts() {
   const out = [], y = profile.height - profile.bottom + 24;
   let free = -Infinity;
+  profile.crowded = 0;
   const worst = worstConflict(), several = classesDiffer();
+  const ends = (conflict) => [conflict.chainage_from, conflict.chainage_to].map((c) =>
+      clamp(profileX(c), profile.left, profile.width - profile.right));
+  const middleOf = (conflict) => ends(conflict)[0] + Math.max(3, ends(conflict)[1] - ends(conflict)[0]) / 2;
+  const taken = page.conflict ? middleOf(page.conflict) : -Infinity;
   for (const conflict of conflictList()) {
     if (conflict.chainage_to < profile.from || conflict.chainage_from > profile.to) continue;
-    const x1 = clamp(profileX(conflict.chainage_from), profile.left, profile.width - profile.right);
-    const x2 = clamp(profileX(conflict.chainage_to), profile.left, profile.width - profile.right);
+    const [x1, x2] = ends(conflict);
     const chosen = conflict === page.conflict, words = classOf(conflict.least_distance), quiet = isAccepted(conflict);
     const colour = quiet ? kQuietColour : words.colour;
-    const width = Math.max(3, x2 - x1), middle = x1 + width / 2;
+    const width = Math.max(3, x2 - x1), middle = middleOf(conflict);
     const marked = `${several ? words.symbol : ""}${conflict.id}${quiet ? "✓" : ""}`;
-    const label = chosen || middle - free > 8 * marked.length + 10;
-    if (label) free = middle;
+    const room = 8 * marked.length + 10;
+    const label = chosen || (middle - free > room && Math.abs(middle - taken) > room);
+    if (label) free = middle; else ++profile.crowded;
     const extra = conflict === worst ? " (worst)" : "";
     out.push(make("g", { class: chosen ? "mark chosen" : "mark",
                          onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
@@ -237,7 +261,7 @@ function drawProfile() {
                         : "The result has no profile: clearway run --profile D adds this curve."));
   }
   const focused = holder.contains(document.activeElement);
-  holder.replaceChildren(svg, profileKeys());
+  holder.replaceChildren(svg, profileKeys(), crowdedBars(profile.crowded));
   watchProfile(svg);
   if (focused) svg.focus();
   moveProfileCursor();

@@ -99,11 +99,12 @@ function mapAxes() {
 function mapBars() {
   const y = sectionMap.height - sectionMap.bottom + 26;
   let free = -Infinity;
+  sectionMap.crowded = 0;
   return (section.facts.check?.stops ?? []).map((stop, i) => {
     const index = sectionBins().indexOf(stop.bin), [from, to] = stretchRange(index);
     const x1 = mapX(from), x2 = Math.max(mapX(to), x1 + 2), label = String(i + 1), middle = (x1 + x2) / 2;
     const room = middle - free > 8 * label.length + 8;
-    if (room) free = middle;
+    if (room) free = middle; else ++sectionMap.crowded;
     return make("g", { class: "mark", onclick: (event) => { event.stopPropagation(); chooseStretch(index); } },
                 make("rect", { x: x1 + 0.5, y, width: Math.max(1, x2 - x1 - 1), height: 9, fill: "#c2410c" }),
                 room && make("text", { x: middle, y: y + 22, class: "middle" }, label));
@@ -136,7 +137,7 @@ function drawMap() {
       mapAxes(), mapBars(),
       make("rect", { id: "section-cursor", fill: "none", stroke: "#00735c", "stroke-width": 2.5, "pointer-events": "none" }));
   const focused = holder.contains(document.activeElement);
-  holder.replaceChildren(svg, mapScale());
+  holder.replaceChildren(svg, mapScale(), crowdedBars(sectionMap.crowded));
   watchMap(svg);
   if (focused) svg.focus();
   placeMapCursor();

@@ -9,8 +9,8 @@ function buildAnswer() {
   const text = check ? sentence.slice(sentence.indexOf(": ") + 2) : sentence;
   byId("verdict-body").append(
       answerBanner({ kind, word, lines: [
-        make("p", { id: "answer" }, `${capital(text)}.`), seeWarnings("See", warnings)] }),
-      warningsList(warnings.map((w) => `${capital(w.message)}.`)), loadBox());
+        make("p", { id: "answer" }, asSentence(text)), seeWarnings("See", warnings)] }),
+      warningsList(warnings.map((w) => asSentence(w.message))), loadBox());
 }
 
 /** The numbers of the load and its path. */
@@ -59,7 +59,7 @@ function outlinesTable({ rows, gaps, loads }) {
     { title: "Verdict", cell: (p) => p.line ? p.verdict ?? "not judged" : "unknown" },
     { title: "Why", cell: (p) => p.reason ?? "the table has no outline here", text: true },
   ];
-  return [make("h3", {}, "Outlines by stretch"), make("div", { class: "scroll tall" },
+  return [make("h3", {}, "Outlines by stretch"), scrollBox("tall",
       listTable("Outlines by stretch", columns, parts.map((part) => make("tr", {}, cellsOf(columns, part)))))];
 }
 

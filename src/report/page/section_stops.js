@@ -71,7 +71,7 @@ function placesTable() {
     const show = () => showStretch(section.facts.check.stops[deepestStop(place)].bin);
     return make("tr", { ...chosenBy(show), tabindex: 0, "data-place": place.label }, cellsOf(columns, place));
   });
-  const table = (part) => make("div", { class: "scroll tall" }, listTable("Places that stop the load", columns, part));
+  const table = (part) => scrollBox("tall", listTable("Places that stop the load", columns, part));
   return make("div", {}, make("h3", {}, "By place"), table(rows.slice(0, kShownPlaces)),
       folded(`${plural(places.length - kShownPlaces, "place")} less deep`, rows.length > kShownPlaces && table(rows.slice(kShownPlaces))));
 }
@@ -110,7 +110,7 @@ function buildStops() {
       "Too far is how much of the load and its margin it takes. y is to the left of the path, and z above it."));
   byId("stops-places").append(placesTable());
   const titles = [{ title: "No." }, { title: `Chainage (${unitSymbol})` }, ...columns.map(({ title }) => ({ title }))];
-  const table = make("div", { class: "scroll tall" },
+  const table = scrollBox("tall",
       listTable("Stretches that stop the load", titles, stops.flatMap((stop, i) => stopRows(stop, i + 1, columns))));
   byId("stops-table").append(...(stops.length > kShownStretches
       ? [folded(`By stretch: ${count(stops.length)} stretches, each with what lets the load pass there`, table)]
@@ -133,6 +133,6 @@ function buildWidths() {
       make("p", {}, `Left and right run from y = 0 to the border of the nearest blocked cell, anywhere on the path. The symmetric width ` +
            `has room for rounding taken off. The last column is for a load that stands at z = ${fixed(base, 2)} ${unitSymbol}` +
            `${below > 0 ? ", the lowest height at which the middle is free." : "."}`),
-      make("div", { class: "scroll tall" },
+      scrollBox("tall",
            listTable("Widths", columns, bands.map((band) => make("tr", {}, cellsOf(columns, band))))));
 }

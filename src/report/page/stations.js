@@ -86,7 +86,7 @@ function buildStations() {
   byId("stations-note").append(make("p", {}, stationsNote()));
   byId("stations-table").append(make("details", { open: stations.list.length <= kUnfoldedRows ? "" : null },
       make("summary", {}, "The table"),
-      make("div", { class: "scroll" },
+      scrollBox("",
            listTable("Stations", columns, stations.list.map((row) => stationRow(row, columns))))));
 }
 

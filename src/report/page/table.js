@@ -193,7 +193,7 @@ function drawTable() {
   const columns = tableColumns(), all = sortedConflicts(columns);
   const rows = all.slice(table.first, table.first + table.rows);
   byId("conflicts-table").replaceChildren(
-    make("div", { class: "scroll" }, make("table", { class: "list", role: "grid", "aria-label":
+    scrollBox("", make("table", { class: "list", role: "grid", "aria-label":
          "Conflicts. Arrow keys go from row to row, Enter shows the conflict." },
          tableHead(columns, true), make("tbody", {}, rows.map((c) => tableRow(c, columns, true))))),
     tablePager(all.length));

@@ -184,7 +184,7 @@ function buildUnseen() {
   byId("unseen-advice").append(...adviceSentences().map(([title, text]) =>
       make("li", {}, make("strong", {}, `${title}. `), text)));
   const groups = unseenGroups(), shown = groups.slice(0, kShownGroups);
-  byId("unseen-table").append(make("div", { class: "scroll" }, groupTable(shown, true)));
+  byId("unseen-table").append(scrollBox("", groupTable(shown, true)));
   if (shown.length < groups.length) {
     byId("unseen-table").append(make("p", { class: "note" },
         `The ${count(shown.length)} largest of ${count(groups.length)} are in the table.`));

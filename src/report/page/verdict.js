@@ -34,7 +34,8 @@ function conflictTiles() {
     if (inside > 0) tiles.push(tile(count(inside), "of them inside the vehicle"));
     tiles.push(worstTile(worst));
     tiles.push(tile(`No. ${worst.id}`,
-                    `worst: chainage ${placeWords(stationOf(worst))}${after(kSides[worst.side])}`,
+                    `worst: chainage ${placeWords(stationOf(worst))}` +
+                    after(isInside(worst.least_distance) ? innerSideWords(worst.side) : kSides[worst.side]),
                     () => goTo(worst)));
   }
   return tiles;
@@ -58,7 +59,7 @@ function certaintyTiles() {
 
 /** How bad the worst conflict is, and on which side. */
 function worstTile({ points, encroachment, encroachment_is: bound, least_distance: distance, side }) {
-  const where = after(sideWords(side));
+  const where = after(sideOfPlace({ side, least_distance: distance }));
   if (encroachment === null) return tile(plural(points, "point"), `in the worst conflict${where}`);
   if (isInside(distance)) return tile(metres(-distance), `deepest inside the vehicle${where}`);
   const words = missingWords(encroachment, distance, bound);
@@ -105,9 +106,9 @@ function placesText({ count: listed, small_groups: small, first_small: first }) 
 }
 
 /** What is missing at a conflict, as the end of a sentence; nothing where it is not known. */
-function nearnessText({ encroachment, encroachment_is: bound, least_distance: distance }, radius) {
+function nearnessText({ encroachment, encroachment_is: bound, least_distance: distance, side }, radius) {
   if (encroachment === null) return "";
-  if (isInside(distance)) return `: ${depthWords(distance)} inside the vehicle`;
+  if (isInside(distance)) return `: ${depthWords(distance)} inside the vehicle${after(innerSideWords(side))}`;
   const words = missingWords(encroachment, distance, bound);
   if (words === "") return `: ${metres(distance)} away, which is too close only with the errors`;
   return words === "touches" ? ": it touches the vehicle" : `: ${words} of ${radius} are missing`;
@@ -118,8 +119,9 @@ function worstSentence(worst, radius) {
   const place = worst.least_distance === null ? "" :
       nearestPointSentence({ ...worst, point: worst.nearest_point, side: "unknown" }, worst.least_distance);
   return `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
-      `${after(sideWords(worst.side))}${bodyWords(worst)}${nearnessText(worst, radius)}.${place}` +
-      (worst.remedy ? ` To pass: ${worst.remedy}.` : "");
+      `${isInside(worst.least_distance) ? "" : after(sideWords(worst.side))}${bodyWords(worst)}` +
+      `${nearnessText(worst, radius)}.${place}` +
+      (worst.remedy ? ` ${worst.remedy}` : "");
 }
 
 /** Which conflict is the worst of those that are not accepted, where that is not the worst of all. */
@@ -127,7 +129,7 @@ function ledgerWorstSentence() {
   const worst = worstOutside();
   if (!worst || worst === worstConflict() || page.facts.verdict !== "conflict") return "";
   return ` The worst that is not accepted is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
-      `${after(sideWords(worst.side))}${bodyWords(worst)}.`;
+      `${after(sideOfPlace(worst))}${bodyWords(worst)}.`;
 }
 
 const isSolid = () => page.facts.inputs.model.solids > 0;
@@ -331,29 +333,25 @@ function floorSentence() {
       `${floor.words}, such as points of the ground, and ${one ? "is" : "are"} not judged.`;
 }
 
-/** How many points the search ignored; null where it ignored none. */
+/** How many points the search left out of the environment; null where it left out none. */
 function ignoredSentence() {
   const { ignored } = page.facts;
   return ignored === null ? null : `The search ignored ${plural(ignored.points, "point")} of the environment ` +
       `(${ignored.what}). ${collidingIgnored(ignored)}`;
 }
 
-function cautions() {
-  const { facts } = page;
-  const out = facts.warnings.map((w) => `${capital(w.message)}.`);
-  const { conflicts, inputs, query } = facts;
-  if (conflicts && inputs.trajectory.length > 0 && conflicts.longest_group > 5 &&
-      conflicts.longest_group > 0.5 * inputs.trajectory.length) {
-    out.push(`One group of touching points goes along ${station(conflicts.longest_group)} of the ` +
-             `path's ${station(inputs.trajectory.length)}. That is often the ground below the ` +
-             "wheels. clearway run --floor leaves out what lies below a height of the vehicle.");
-  }
-  return out;
-}
-
 function crsName(wkt) {
   const name = /^[A-Z]+\["([^"]+)"/.exec(wkt);
   return name ? name[1] : wkt ? "named in the scans" : "none given";
+}
+
+/** The scans that were made into the environment, and when; the first ten by name. */
+function sourceNames({ files, sources, scanned }) {
+  const more = files - sources.length;
+  const names = joined(more > 0 ? [...sources, `${count(more)} more`] : sources);
+  const days = scanned === null ? `, without a date of ${files === 1 ? "its" : "their"} own`
+      : ` of ${scanned.first}${scanned.last === scanned.first ? "" : ` to ${scanned.last}`}`;
+  return `${plural(files, "scan")} (${names})${days}`;
 }
 
 function questionTable() {
@@ -365,14 +363,16 @@ function questionTable() {
     factRow("Question", `Does anything come closer than ${shortLength(query.radius)} to the ` +
             (query.between_poses ? "vehicle, at its poses and between them?"
                                  : "vehicle, at any of its poses?")),
-    factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points ` +
-            `of ${plural(inputs.environment.files, "file")}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
+    factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points of ` +
+            `${sourceNames(inputs.environment)}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
     inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
         : factRow("Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +
                   `${size} ${unitSymbol}.${solidText(inputs.model)} `, hash(inputs.model.hash)),
     factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
-            `${station(inputs.trajectory.length)} long. `, hash(inputs.trajectory.hash)),
+            `${station(inputs.trajectory.length)} long. ` +
+            (inputs.trajectory.made_by ? `${capital(`made by clearway trajectory ${inputs.trajectory.made_by}`)}. ` : ""),
+            hash(inputs.trajectory.hash)),
     factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
     factRow("Asked for", askedFor(query)),
     page.facts.floor === null ? ""
@@ -445,9 +445,9 @@ function legend() {
 
 function buildVerdict() {
   const { facts } = page, conflict = facts.verdict === "conflict";
-  const [first, second] = verdictSentences(), warned = cautions(), missing = missingParts();
-  const searched = searchedSentence(), scanned = scannedSentence(), below = floorSentence();
-  const ignored = ignoredSentence();
+  const [first, second] = verdictSentences(), warned = page.facts.warnings.map((w) => asSentence(w.message)), missing = missingParts();
+  const searched = searchedSentence(), scanned = scannedSentence(), below = floorSentence(),
+      ignored = ignoredSentence();
   byId("verdict-body").append(
     answerBanner({ kind: facts.verdict, word: capital(facts.verdict_words), lines: [
           make("p", {}, first), make("p", {}, second),

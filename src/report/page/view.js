@@ -94,7 +94,8 @@ function paintView() {
   const painter = new Painter(1, 1, { ...painterCamera(over) });
   Object.assign(painter, { width: over.width, height: over.height,
                            perMetre: over.width / (2 * painter.camera.halfWidth) });
-  drawNumbers(context, painter, over.width / over.clientWidth || 1, view.places);
+  byId("view-crowded").textContent =
+      crowdedWords(drawNumbers(context, painter, over.width / over.clientWidth || 1, view.places));
 }
 
 function scheduleView() {

@@ -1,4 +1,4 @@
-const unitSymbol = { metre: "m", foot: "ft", "us-survey-foot": "ft", degree: "°" }[page.facts.unit]
+const unitSymbol = { metre: "m", foot: "ft", "us-survey-foot": "US ft", degree: "°" }[page.facts.unit]
     ?? "m";
 const kClassWords = {
   hit: { shape: "diamond", symbol: "◆", colour: "#c2410c", rgb: [213, 70, 0] },
@@ -63,6 +63,13 @@ const sideWords = (side) => ({ left: "on the left", right: "on the right", above
                                below: "below it", front: "in front of it", behind: "behind it",
                                around: "around it" })[side]
     ?? "";
+/** Where a vehicle was entered by what is inside it. */
+const innerSideWords = (side) => ({ left: "from its left side", right: "from its right side", above: "from its top",
+                                    below: "from its underside", front: "from its front", behind: "from its rear",
+                                    around: "from both sides" })[side]
+    ?? "";
+/** On which side something lies; of what is inside the vehicle, from which it came in. */
+const sideOfPlace = ({ side, least_distance: distance }) => isInside(distance) ? innerSideWords(side) : sideWords(side);
 
 /** Left is positive. Without "-0.00". */
 function signed(v) {
@@ -82,7 +89,7 @@ function offsetWords({ lateral, height, body }) {
 const after = (text) => text ? `, ${text}` : "";
 
 /** ", body NAME", where there are several. */
-const bodyWords = ({ body }) => body === undefined ? "" : `, body "${body}"`;
+const bodyWords = ({ body }) => body === undefined ? "" : body === "body" ? ", the body" : `, body "${body}"`;
 
 /** Where along the path the obstacle stands. If that is not known, where it is nearest or begins. */
 function stationOf(conflict) {
@@ -126,7 +133,7 @@ function missingParts() {
 /** of: a place with side, lateral and height. */
 function nearestPointSentence({ point, ...of }, distance) {
   if (!point) return "";
-  const where = [sideWords(of.side), offsetWords(of)].filter(Boolean).join(", ");
+  const where = [isInside(distance) ? "" : sideWords(of.side), offsetWords(of)].filter(Boolean).join(", ");
   const which = isInside(distance) ? "deepest" : "nearest";
   return ` The ${which} point is ${where}${where ? "," : ""} at ${coordinates(point)}.`;
 }

@@ -24,7 +24,7 @@ constexpr double kFloorStep = 0.05;
 constexpr std::uint64_t kMostTested = 20'000;
 
 std::string who(const MovingBody& body) {
-  return body.name.empty() ? "" : "body " + std::string(body.name) + ": ";
+  return body.name.empty() ? "" : body_words(body.name) + ": ";
 }
 
 /// Whether the model is within the radius of x, in the model's frame.

@@ -113,7 +113,10 @@ void add_alike(const std::vector<BodyMessages>& bodies, std::size_t first, const
   }
   of_all.stretches = united_ranges(std::move(of_all.stretches));
   const bool all = count == bodies.size() && count > 1;
-  add_message(std::move(of_all), all ? "each body" : (count > 1 ? "bodies " : "body ") + names,
+  add_message(std::move(of_all),
+              all         ? "each body"
+              : count > 1 ? "bodies " + names
+                          : body_words(names),
               count == 1 ? names : "", log);
 }
 
@@ -317,7 +320,7 @@ void warn_of_missing_poses(const Query& query, std::span<const Message> of_input
   for (const Body& body : query.bodies) {
     const std::vector<std::uint64_t> missing = missing_poses(body, query.poses.size());
     if (missing.empty() || body.poses.empty() || is_reported(body, of_inputs)) continue;
-    Message message = off_path_message("body " + body.name, missing, query.poses.size(),
+    Message message = off_path_message(body_words(body.name), missing, query.poses.size(),
                                        "so nothing is known of it there",
                                        "Give it those poses too, or look at the stretches that "
                                        "were not searched in the report");

@@ -116,7 +116,7 @@ TEST_CASE("trajectory follow keeps stations, those of the place that the body is
   for (std::size_t i = 0; i < path.size(); ++i)
     stations.push_back(500 + 0.2 * static_cast<double>(i));
   NoProgress progress;
-  write_trajectory_table(path, {.station = stations}, {.in_metres = true},
+  write_trajectory_table(path, {.station = stations}, {.unit = FileUnit::exactly(1)},
                          File::create(circle.folder / "line.csv"), progress);
   const auto check = [&](const std::string& how, double first, std::size_t count) {
     require_success(circle.follow(how, "line.csv"));

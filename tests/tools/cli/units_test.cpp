@@ -133,6 +133,69 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
   CHECK(has(codes_in(other), "two-feet"));
 }
 
+TEST_CASE("a path that a command changes is understood as the given one is") {
+  const StatePlane scene;
+  scene.write_scan("feet.csv", "us-ft", 1);
+  scene.convert("feet.csv");
+  scene.write_model("feet.xyz", 1);
+  scene.write_path("m.csv", "m", kMetresPerUsSurveyFoot);
+  for (const std::string unit : {"ft", "us-ft", "ift"}) scene.write_path(unit + ".csv", unit, 1);
+  scene.write_path("plain.csv", "", 1);
+  const struct {
+    std::string path, option;
+    const char* header;  ///< of the changed path; empty for matrices
+  } given[] = {{"m.csv", "", "x [m],y [m],z [m],r00"},
+               {"ft.csv", "", "x [ft],"},
+               {"us-ft.csv", "", "x [us-ft],"},
+               {"ift.csv", "", "x [ift],"},
+               {"plain.csv", " --trajectory-unit ft", "x [ft],"},
+               {"plain.csv", " --trajectory-unit us-ft", "x [us-ft],"},
+               {"plain.csv", "", ""}};
+  const std::string changes[] = {
+      "resample --max-motion 9 --model feet.xyz", "thin --max-motion 1e-6 --model feet.xyz",
+      "smooth --within 1e-3 --step 0.1 --model feet.xyz",
+      "resample --max-motion 9 --model feet.xyz --env site.h5", "follow --at 0"};
+  for (const auto& [path, option, header] : given) {
+    const std::string asked = "--radius 1.004" + option;
+    const int expected = StatePlane::found(scene.run(path, "--model feet.xyz", asked));
+    CHECK(expected > 20);
+    for (const std::string& change : changes) {
+      CAPTURE(path, option, change);
+      require_success(scene.Workplace::run("trajectory " + change + " " + path + option +
+                                           " --force -o new.csv"));
+      if (change != "follow --at 0") check_says(scene.bytes("new.csv"), header);
+      CHECK(StatePlane::found(scene.run("new.csv", "--model feet.xyz", "--radius 1.004")) ==
+            expected);
+    }
+  }
+}
+
+TEST_CASE("models and exports of a result name their unit where it is known") {
+  const StatePlane scene;
+  scene.write_scan("feet.csv", "us-ft", 1);
+  scene.convert("feet.csv");
+  scene.write_path("path.csv", "us-ft", 1);
+  require_success(scene.Workplace::run("model box 0.2,0.2,0.2 -o box.off"));
+  require_success(scene.Workplace::run("model box 0.2,0.2,0.2 -o box.ply"));
+  require_success(scene.Workplace::run("model box.off -o points.ply --spacing 0.05"));
+  const int expected =
+      StatePlane::found(scene.run("path.csv", "--model box:0.2,0.2,0.2", "--radius 0.5"));
+  CHECK(expected > 20);
+  for (const std::string model : {"box.off", "box.ply"}) {
+    CHECK(StatePlane::found(scene.run("path.csv", "--model " + model, "--radius 0.5")) == expected);
+  }
+  check_says(scene.run("path.csv", "--model points.ply", "--radius 0.5").err,
+             "its unit is 1 m, the environment's 0.3048");
+  for (const std::string name : {"las", "ply", "xyz", "csv"}) {
+    CAPTURE(name);
+    const std::string file = "points_of." + name;
+    require_success(scene.Workplace::run("export out.h5 --force -o " + file));
+    require_success(scene.Workplace::run("convert --force " + file + " -o again.h5"));
+    check_json(json_of(run_program(scene.folder, "info --json again.h5")),
+               R"({"length_unit": "us-survey-foot"})");
+  }
+}
+
 TEST_CASE("feet are no warning where every input names its unit") {
   const StatePlane scene;
   scene.write_scan("feet.csv", "us-ft", 1);

@@ -278,3 +278,23 @@ TEST_CASE("one colliding point is a conflict, however doubtful the question is")
   check_json(json_of(check_outcome(street.search("--radius 0.3 --json --fail-on-collision"), 1)),
              R"({"verdict": "conflict", "reasons": []})");
 }
+
+TEST_CASE("the hash of a result is that of its question, inputs and answer") {
+  const Street street;
+  const auto hash = [&](const std::string& arguments) {
+    const Outcome found = require_success(street.search("--force --json " + arguments));
+    CHECK(json_of(found)["verdict"] == "clear");
+    const Outcome page = require_success(
+        street.run("report out.h5 --env site.h5 --model car.xyz --trajectory path.csv -o page.html "
+                   "--force --json"));
+    return json_of(page)["inputs"]["result"]["hash"].get<std::string>();
+  };
+  const std::string first = hash("--radius 0.1");
+  CHECK(hash("--radius 0.1 --engine sweep --threads 1") == first);
+  CHECK(hash("--radius 0.12") != first);
+  CHECK(hash("--radius 0.1 --profile 0.5") != first);
+  CHECK(hash("--radius 0.1 --floor -1") != first);
+  street.put("wall.xyz", street.bytes("wall.xyz") + "3 2 0\n");
+  require_success(street.run("convert wall.xyz -o site.h5 --force"));
+  CHECK(hash("--radius 0.1") != first);
+}

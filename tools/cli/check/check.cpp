@@ -445,11 +445,7 @@ class Check {
           "of "
           "this path",
           path.string(), motion, step.options().unit);
-      const LengthUnit of_store = length_unit_of(Store(plan_.environment()).length_unit());
-      plan_.take_denser_path(of_store == LengthUnit::kFoot           ? "ift"
-                             : of_store == LengthUnit::kUsSurveyFoot ? "us-ft"
-                             : of_store == LengthUnit::kMetre        ? "m"
-                                                                     : "");
+      plan_.take_denser_path();
       note_step(kPathName, words, was_there);
     } catch (const InputError& error) {
       spdlog::info("no poses are put between those of the path: {}", error.what());
@@ -546,13 +542,16 @@ class Check {
     const ordered_json what = Step<ReportCommand>(plan_.report("")).key();
     ordered_json known = record_->find(kReportName, what);
     if (plan_.has_ledger()) known = nullptr;  // the ledger may have changed
-    if (known.is_string()) {
-      return note_step(kReportName, plan_.report(known.get<std::string>()), true);
+    if (known.is_object() && known["date"].is_string()) {
+      warnings_ = known["warnings"];
+      return note_step(kReportName, plan_.report(known["date"].get<std::string>()), true);
     }
     const std::string date = now_in_utc();
     Step<ReportCommand> step(plan_.report(date));
-    in_terms_of_check([&] { return perform(step.options(), found_ ? &*found_ : nullptr); });
-    record_->note(kReportName, what, date);
+    const ReportSummary page =
+        in_terms_of_check([&] { return perform(step.options(), found_ ? &*found_ : nullptr); });
+    warnings_ = ordered_json::parse(page.facts)["warnings"];
+    record_->note(kReportName, what, {{"date", date}, {"warnings", warnings_}});
     note_step(kReportName, step.words(), false);
   }
 
@@ -606,6 +605,7 @@ class Check {
     out["verdict"] = name_of(found.report.verdict());
     if (outside_) out["outside_of_accepted"] = name_of(*outside_);
     out["sentence"] = sentence;
+    out["warnings"] = warnings_;
     out["nothing_done"] = nothing_done_;
     out["reused"] = reused_;
     out["commands"] = commands_;
@@ -617,6 +617,7 @@ class Check {
   const CheckCommand& options_;
   CheckPlan plan_;
   std::optional<CheckRecord> record_;
+  ordered_json warnings_;  ///< all that the page shows, which are those of all steps
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
   std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early

@@ -237,8 +237,8 @@ Words CheckPlan::resample() const {
          vehicle + given<ChangeCommand>(check_, kResampleOptions) + Words{"--force"};
 }
 
-/// The words of a step with the denser path, which is in the environment's frame and unit, so that
-/// what says how the file of the user is read goes.
+/// The words of a step with the denser path, which is in the environment's frame and names its unit
+/// if that of the user does, so that what says how the file of the user is read goes.
 Words CheckPlan::with_path(Words words) const {
   if (!has_denser_path_) return words;
   Words out;
@@ -254,7 +254,6 @@ Words CheckPlan::with_path(Words words) const {
     }
     if (takes_value) ++i;
   }
-  if (!unit_of_path_.empty()) out.insert(out.end(), {"--trajectory-unit", unit_of_path_});
   return out;
 }
 

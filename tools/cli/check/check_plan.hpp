@@ -59,11 +59,7 @@ class CheckPlan {
   /// From here on the conversion keeps only the points within `metres` of the path.
   void keep_near(double metres) { near_metres_ = metres; }
   /// From here on the steps take the output of resample() as the path.
-  /// unit: the environment's, as options name it; empty where it is not known.
-  void take_denser_path(std::string unit) {
-    has_denser_path_ = true;
-    unit_of_path_ = std::move(unit);
-  }
+  void take_denser_path() { has_denser_path_ = true; }
 
   Words run(bool replacing) const;
   Words conflicts() const;
@@ -95,7 +91,6 @@ class CheckPlan {
   bool has_store_;
   double near_metres_ = 0;  ///< 0: the conversion keeps all points
   bool has_denser_path_ = false;
-  std::string unit_of_path_;
 };
 
 }  // namespace clearway::tool

@@ -128,7 +128,8 @@ bool are_same(const Conflict& a, const Conflict& b) {
 }
 
 /// A conflict is worse where it comes nearer, or reaches deeper, by more than `worse_by`. How deep
-/// a point is behind a surface does not follow from distances, but from the shift that frees it.
+/// a point is behind a surface does not follow from distances, but from the shift that its own
+/// points need.
 Worse worse(const ComparedConflicts& found, const Conflict& a, const Conflict& b) {
   if (found.distances_known && b.least_distance) {
     if (!a.least_distance || *b.least_distance < *a.least_distance - found.worse_by) {
@@ -172,7 +173,7 @@ std::string worsening_text(const ComparedConflicts& found, const Conflict& a, co
     const double least = least_own_shift(c);
     return std::isinf(least) ? std::nullopt : std::optional(least);
   };
-  return "freed by a shift of " + change(shift(a), shift(b), "more than 2");
+  return "its own points need a shift of " + change(shift(a), shift(b), "more than 2");
 }
 
 namespace {

@@ -137,8 +137,10 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
     add("trim", [](const Conflict& c) { return length_cell(rounded_up(least_trim(c)), 3); });
   }
   if (all.knows_shifts) {
-    add("shift left", [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_left)); });
-    add("shift right", [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_right)); });
+    add("own shift left",
+        [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_left)); });
+    add("own shift right",
+        [](const Conflict& c) { return bound_cell(rounded_up(c.own_shift_right)); });
   }
   if (rows.front()->certain) {
     add("class",

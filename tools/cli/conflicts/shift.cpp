@@ -33,6 +33,7 @@
 #include "io/files/pending_file.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -108,8 +109,8 @@ ShiftOptions shift_options_of(const ShiftCommand& command, const PoseLabels& lab
 /// How far was looked on either side, for example "of up to 2 m" or "between 1 m to the right and 3
 /// m to the left".
 std::string range_text(const ShiftTable& table, const std::string& unit) {
-  const std::string left = format_number(table.lateral_to) + " " + unit;
-  const std::string right = format_number(-table.lateral_from) + " " + unit;
+  const std::string left = format_length(table.lateral_to) + " " + unit;
+  const std::string right = format_length(-table.lateral_from) + " " + unit;
   if (left == right) return "of up to " + left;
   return "between " + right + " to the right and " + left + " to the left";
 }
@@ -123,7 +124,7 @@ std::string shift_text(const StretchShift& row, const ShiftTable& table, const s
   }
   if (*row.shift == 0) return "it is free";
   const std::string text =
-      format_number(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
+      format_length(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
   if (row.warned_of.empty()) return text;
   std::string codes;
   for (const std::string& code : row.warned_of) codes += (codes.empty() ? "" : ", ") + code;

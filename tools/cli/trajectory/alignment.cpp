@@ -79,7 +79,7 @@ void write_alignment(AlignmentCommand& options) {
   const AlignmentFile made = read_alignment_file(options.input, options.alignment);
   for (const Message& remark : made.remarks) log_message(remark);
   ConsoleProgress progress;
-  write_trajectory_table(made.poses, {.station = made.stations}, {.in_metres = true},
+  write_trajectory_table(made.poses, {.station = made.stations}, {.unit = FileUnit::exactly(1)},
                          File::create(output.partial()), progress);
   output.publish();
   spdlog::info(

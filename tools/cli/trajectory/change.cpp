@@ -75,7 +75,20 @@ struct Change {
                                   double max_motion, Progress& progress)>
       make;
   const char* consequence;  ///< what missing poses mean for the output
+  const char* how;          ///< see made_words()
 };
+
+/// How a path was made of another one, for PoseLabels::made_by. how: with places for the name of
+/// the given file, its poses and the number of the new ones
+std::string made_words(const std::string& how, const std::filesystem::path& given,
+                       std::size_t before, std::size_t after) {
+  if (before == 0) return "";
+  std::string name = given.filename().string();
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return c < ' '; }, ' ');
+  const std::string poses = counted(before, "given pose"), now = format_count(after);
+  return fmt::format(fmt::runtime(how), name, poses, now);
+}
 
 std::vector<Pose> resample(const std::vector<Pose>& poses, const Mover& mover, double max_motion,
                            Progress& progress) {
@@ -192,12 +205,11 @@ void take_unit_of_environment(ChangeCommand& options) {
 }
 
 /// Reads the path, and logs what is odd about it and which labels are left out.
-std::vector<Pose> read_path(const ChangeCommand& options, PoseLabels& labels) {
-  std::vector<Message> remarks;
-  std::vector<Pose> poses = read_trajectory(options.input, options.trajectory, &remarks, &labels);
-  for (const Message& remark : remarks) log_message(remark);
-  tell_of_labels(options.input, labels);
-  return poses;
+TrajectoryFile read_path(const ChangeCommand& options) {
+  TrajectoryFile path = read_trajectory_file(options.input, options.trajectory);
+  for (const Message& remark : path.remarks) log_message(remark);
+  tell_of_labels(options.input, path.labels);
+  return path;
 }
 
 void refuse_overwriting_inputs(const ChangeCommand& options) {
@@ -215,8 +227,8 @@ void write_changed(ChangeCommand& options, const Change& change) {
   refuse_overwriting_inputs(options);
   take_unit_of_environment(options);
   PendingFile output(options.output, options.force);
-  PoseLabels labels;
-  const std::vector<Pose> before = read_path(options, labels);
+  const TrajectoryFile path = read_path(options);
+  const std::vector<Pose>& before = path.poses;
   if (before.empty()) spdlog::warn("{}: no poses", options.input.string());
   const Mover mover(options, before);
   const std::vector<double> motions_before = mover.motions(before);
@@ -228,7 +240,9 @@ void write_changed(ChangeCommand& options, const Change& change) {
   warn_of_jumps(motions_before, options, change.consequence);
   ConsoleProgress progress;
   const std::vector<Pose> after = changed(before, mover, options, change, progress);
-  write_poses(after, labels_along(before, labels, after), output.partial(), progress);
+  PoseLabels labels = labels_along(before, path.labels, after);
+  labels.made_by = made_words(change.how, options.input, before.size(), after.size());
+  write_poses(after, labels, path, output.partial(), progress);
   output.publish();
 
   const double motion_after = mover.largest_motion(after);
@@ -250,8 +264,10 @@ void write_changed(ChangeCommand& options, const Change& change) {
 CLI::Option* add_files(CLI::App& command, ChangeCommand& options) {
   command.add_option("IN", options.input, kTrajectoryHelp)->type_name("FILE")->required();
   command
-      .add_option("-o,--output", options.output,
-                  "The new trajectory: 16 numbers a line, a row-major 4x4 matrix")
+      .add_option(
+          "-o,--output", options.output,
+          "The new trajectory: a table with the unit and the stations of the path or, where "
+          "it names neither, 16 numbers a line, a row-major 4x4 matrix")
       ->type_name("FILE")
       ->required();
   CLI::Option* model =
@@ -336,11 +352,16 @@ void write_smoothed(SmoothCommand& options) {
     options.parameters.step = 0.1 / options.trajectory.environment_unit;
   }
   PendingFile output(options.output, options.force);
-  PoseLabels labels;
-  const std::vector<Pose> before = read_path(options, labels);
+  const TrajectoryFile given = read_path(options);
+  const std::vector<Pose>& before = given.poses;
   const SmoothPath path = smoothed(before, options);
   ConsoleProgress progress;
-  write_poses(path.poses, labels_at(path.place, labels), output.partial(), progress);
+  PoseLabels labels = labels_at(path.place, given.labels);
+  labels.made_by =
+      made_words("smooth of {}: {}, {} in their place on a smooth curve within " +
+                     format_brief(options.parameters.within) + " " + options.unit + " of them",
+                 options.input, before.size(), path.poses.size());
+  write_poses(path.poses, labels, given, output.partial(), progress);
   output.publish();
   const std::string& unit = options.unit;
   const double at_poses = rounded_up(path.error_at_poses());
@@ -384,7 +405,8 @@ void add_smooth(CLI::App& trajectory) {
 
 constexpr const char* kResampleMotion =
     "The most that a model point may move from one pose to the next";
-const Change kResample{resample, ". The poses that are put between them are a guess"};
+const Change kResample{resample, ". The poses that are put between them are a guess",
+                       "resample of {}: {} among {}, the others on a smooth curve through them"};
 
 }  // namespace
 
@@ -419,7 +441,7 @@ void add_trajectory_changes(CLI::App& trajectory) {
       *thinning,
       "The most that a model point may move between a dropped pose and the last kept pose before "
       "it",
-      {thin, ". The output does not show it any more"});
+      {thin, ". The output does not show it any more", "thin of {}: {}, of which {} are left"});
   thinning->footer(
       "Example: clearway trajectory thin path.txt -o sparse.txt --max-motion 0.01 --model car.ply");
   add_smooth(trajectory);

@@ -59,21 +59,13 @@ BodyMount mount_of(const FollowOptions& options) {
   return BodyPivots{front, rear};
 }
 
-/// The path, and what is known of each of its poses.
-struct Path {
-  std::vector<Pose> poses;
-  PoseLabels labels;
-};
-
 bool writes_path_poses(const FollowOptions& options) {
   return file_ending(options.output) == ".csv";
 }
 
-Path read_path(const FollowOptions& options) {
-  std::vector<Message> remarks;
-  Path path;
-  path.poses = read_trajectory(options.input, options.trajectory, &remarks, &path.labels);
-  for (const Message& remark : remarks) log_message(remark);
+TrajectoryFile read_path(const FollowOptions& options) {
+  TrajectoryFile path = read_trajectory_file(options.input, options.trajectory);
+  for (const Message& remark : path.remarks) log_message(remark);
   tell_of_labels(options.input, path.labels);
   if (path.poses.empty())
     throw InputError(options.input.string() + ": no poses; nothing to follow");
@@ -162,7 +154,7 @@ void report(const FollowOptions& options, const Placed& placed, std::size_t path
 }
 
 /// Places a body of its own at the station or on the pivots of the options.
-Placed place_by_options(const FollowOptions& options, const Path& given, int threads) {
+Placed place_by_options(const FollowOptions& options, const TrajectoryFile& given, int threads) {
   const BodyMount mount = mount_of(options);
   const auto path = on_path(options, [&] { return PathStations(given.poses, threads); });
   Placed placed{on_path(options, [&] { return follow_path(path, mount, threads); }), path.length()};
@@ -175,7 +167,7 @@ Placed place_by_options(const FollowOptions& options, const Path& given, int thr
 }
 
 /// Places a body of the vehicle's file.
-Placed place_of_vehicle(const FollowOptions& options, const Path& path, int threads) {
+Placed place_of_vehicle(const FollowOptions& options, const TrajectoryFile& path, int threads) {
   const std::vector<Pose>& poses = path.poses;
   std::vector<Message> doubts;
   Placed placed{.followed = {}, .path_length = on_path(options, [&] {
@@ -195,16 +187,13 @@ Placed place_of_vehicle(const FollowOptions& options, const Path& path, int thre
   return placed;
 }
 
-void write(const FollowOptions& options, const Placed& placed, const File& file) {
+void write(const FollowOptions& options, const TrajectoryFile& path, const Placed& placed,
+           const std::filesystem::path& file) {
   ConsoleProgress progress;
   const FollowedPath& followed = placed.followed;
-  if (!writes_path_poses(options) && !has_labels(placed.labels)) {
-    write_trajectory(followed.poses, file, progress);
-    return;
-  }
   std::vector<std::uint32_t> path_pose;
   if (writes_path_poses(options)) path_pose.assign(followed.of.begin(), followed.of.end());
-  write_trajectory_table(followed.poses, placed.labels, {.path_pose = path_pose}, file, progress);
+  write_poses(followed.poses, placed.labels, path, file, progress, {.path_pose = path_pose});
 }
 
 void check_options(const FollowOptions& options) {
@@ -222,7 +211,7 @@ void write_followed(const FollowOptions& options) {
   const int threads = threads_or_all(options.threads);
   check_threads(threads);
   PendingFile output(options.output, options.force);
-  const Path path = read_path(options);
+  const TrajectoryFile path = read_path(options);
   const Placed placed = options.vehicle.empty() ? place_by_options(options, path, threads)
                                                 : place_of_vehicle(options, path, threads);
   const auto jumps = jumps_of(step_lengths(path.poses), kLeastJump);
@@ -230,7 +219,7 @@ void write_followed(const FollowOptions& options) {
     log_message(jump_warning(jumps, options.input.string() + ": ", "m",
                              ". Where the body is on that part of the path is a guess"));
   }
-  write(options, placed, File::create(output.partial()));
+  write(options, path, placed, output.partial());
   output.publish();
   report(options, placed, path.poses.size());
 }
@@ -246,9 +235,9 @@ void add_trajectory_follow(CLI::App& trajectory) {
   command
       ->add_option(
           "-o,--output", options->output,
-          "The body's poses: 16 numbers a line, a row-major 4x4 matrix; a name that ends in "
-          ".csv gets a table, whose column path_pose says which pose of the path each "
-          "belongs to")
+          "The body's poses: a table with the unit and the stations of the path or, where it "
+          "names neither, 16 numbers a line, a row-major 4x4 matrix; a name that ends in .csv gets "
+          "a table, whose column path_pose says which pose of the path each belongs to")
       ->type_name("FILE")
       ->required();
   CLI::Option* vehicle =

@@ -6,7 +6,6 @@
 
 #include "core/trajectory/chainage.hpp"
 #include "io/files/file.hpp"
-#include "io/paths/trajectory_file.hpp"
 
 namespace clearway::tool {
 
@@ -62,10 +61,14 @@ PoseLabels labels_along(const std::vector<Pose>& before, const PoseLabels& label
 }
 
 void write_poses(const std::vector<Pose>& poses, const PoseLabels& labels,
-                 const std::filesystem::path& path, Progress& progress) {
+                 const TrajectoryFile& given, const std::filesystem::path& path, Progress& progress,
+                 TrajectoryColumns further) {
   const File file = File::create(path);
-  if (!has_labels(labels)) return write_trajectory(poses, file, progress);
-  write_trajectory_table(poses, labels, {}, file, progress);
+  further.unit = given.own_unit();
+  further.metres_per_unit = given.metres_per_unit;
+  const bool is_table = has_labels(labels) || further.names_unit() || !further.path_pose.empty();
+  if (!is_table) return write_trajectory(poses, file, progress, labels.made_by);
+  write_trajectory_table(poses, labels, further, file, progress);
 }
 
 }  // namespace clearway::tool

@@ -8,6 +8,7 @@
 #include "clearway/trajectory.hpp"
 #include "core/describe/labels.hpp"
 #include "core/util/progress.hpp"
+#include "io/paths/trajectory_file.hpp"
 
 namespace clearway::tool {
 
@@ -34,8 +35,11 @@ PoseLabels made_labels(const PoseLabels& given, const Make& make) {
 PoseLabels labels_along(const std::vector<Pose>& before, const PoseLabels& labels,
                         const std::vector<Pose>& after);
 
-/// Writes poses: matrices, or with labels a table that has them too.
+/// Writes poses that are made of a given trajectory: a table where there are labels, a unit or
+/// further columns to name, and matrices otherwise. Their unit is that of the given file, so that
+/// the new one is understood as that was. further: what else the table has.
 void write_poses(const std::vector<Pose>& poses, const PoseLabels& labels,
-                 const std::filesystem::path& path, Progress& progress);
+                 const TrajectoryFile& given, const std::filesystem::path& path, Progress& progress,
+                 TrajectoryColumns further = {});
 
 }  // namespace clearway::tool

@@ -62,7 +62,7 @@ class Follower {
 
   /// Gives the body the poses that were found for it.
   void place(Body& body, const BodyMount& mount, FollowedPath followed) const {
-    const std::string name = "body " + body.name;
+    const std::string name = body_words(body.name);
     if (followed.pushed_from) throw InputError(name + ": " + pushed_text(followed, path_));
     if (followed.poses.empty() && !path_.poses().empty()) {
       throw InputError(name + ": the path is " + format_brief(path_.length()) +
@@ -99,7 +99,7 @@ void check_own_poses(const Body& body, std::size_t path_poses) {
       (path_pose.empty() || path_pose.back() < path_poses)) {
     return;
   }
-  throw UsageError("body " + body.name + ": keeps " + counted(body.poses.size(), "pose") +
+  throw UsageError(body_words(body.name) + ": keeps " + counted(body.poses.size(), "pose") +
                    ", which do not belong to the " + counted(path_poses, "pose") +
                    " of the path; expected one for each, or path_pose in the order of the path");
 }
@@ -120,7 +120,7 @@ Towing checked_towing(const std::vector<Body>& bodies, const std::vector<BodyMou
   for (const BodyMount& mount : mounts) check_mount(mount);
   Towing towing = towing_of(names, mounts);
   if (towing.fault) {
-    throw UsageError("body " + names[towing.fault->body] + ": " + towing.fault->what);
+    throw UsageError(body_words(names[towing.fault->body]) + ": " + towing.fault->what);
   }
   return towing;
 }

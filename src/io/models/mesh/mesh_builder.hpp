@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/file_unit.hpp"
 #include "clearway/vec3.hpp"
 
 namespace clearway {
@@ -36,6 +37,7 @@ struct MeshRemarks {
 struct MeshFile {
   TriangleMesh mesh;
   MeshRemarks remarks;
+  FileUnit unit = {};  ///< unit that a comment of Clearway names
 };
 
 /// Gives equal positions the same index, in the order of their first use. -0 equals 0.

@@ -4,6 +4,7 @@
 
 #include "clearway/error.hpp"
 #include "io/files/text_writer.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
 namespace {
@@ -25,9 +26,11 @@ void write_mesh(const Model& model, const std::filesystem::path& path, const Fil
   check_mesh_name(path);
   TextWriter out(file);
   if (ends_in(path, ".off")) {
-    out << "OFF\n" << model.vertices.size() << " " << model.triangles.size() << " 0\n";
+    out << "OFF\n# " << kUnitComment << "m\n"
+        << model.vertices.size() << " " << model.triangles.size() << " 0\n";
   } else {
-    out << "ply\nformat ascii 1.0\nelement vertex " << model.vertices.size()
+    out << "ply\nformat ascii 1.0\ncomment " << kUnitComment << "m\nelement vertex "
+        << model.vertices.size()
         << "\nproperty double x\nproperty double y\nproperty double z\nelement face "
         << model.triangles.size() << "\nproperty list uchar uint vertex_indices\nend_header\n";
   }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -7,6 +9,7 @@
 #include "io/files/text_number.hpp"
 #include "io/models/mesh/mesh_builder.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/text/table_header.hpp"
 
 namespace clearway {
@@ -27,7 +30,9 @@ class OffParser {
       fail("more than the " + std::to_string(vertices_) + " vertices and " +
            std::to_string(faces_) + " faces that the file declares; expected its end");
     }
-    return mesh_.finish();
+    MeshFile out = mesh_.finish();
+    out.unit = unit_;
+    return out;
   }
 
  private:
@@ -38,10 +43,22 @@ class OffParser {
   bool next_line() {
     do {
       if (!input_.next_line(line_)) return false;
-      line_ = line_.substr(0, line_.find('#'));
+      const std::size_t comment = std::min(line_.find('#'), line_.size());
+      take_unit(line_.substr(comment));
+      line_ = line_.substr(0, comment);
       split_fields(line_, ' ', words_);
     } while (words_.empty());
     return true;
+  }
+
+  /// Takes the unit from a comment that gives it.
+  void take_unit(std::string_view comment) {
+    const std::size_t at = comment.find(kUnitComment);
+    if (at == std::string_view::npos || comment.find_first_not_of("# ") != at) return;
+    split_fields(comment.substr(at + kUnitComment.size()), ' ', words_);
+    const auto unit = words_.size() == 1 ? file_unit_of(words_[0]) : std::nullopt;
+    if (!unit) fail(excerpt(comment) + "; expected the unit " + file_unit_list());
+    unit_ = *unit;
   }
 
   void need_line(const std::string& expected) {
@@ -121,6 +138,7 @@ class OffParser {
 
   InputBuffer& input_;
   MeshBuilder mesh_;
+  FileUnit unit_;
   std::string_view line_;
   std::vector<std::string_view> words_;
   std::vector<std::int64_t> corners_;

@@ -384,7 +384,10 @@ class PlyMeshParser {
 
 MeshFile read_ply_mesh(InputBuffer input) {
   PlyHeader header = read_ply_header(input);
-  return PlyMeshParser(input, std::move(header)).parse();
+  const FileUnit unit = header.unit ? header.unit->file_unit() : FileUnit();
+  MeshFile out = PlyMeshParser(input, std::move(header)).parse();
+  out.unit = unit;
+  return out;
 }
 
 }  // namespace clearway

@@ -42,7 +42,11 @@ class TextTrajectory {
       line = without_leading_blanks(line);
       if (line.empty()) continue;
       if (is_text_comment(line)) {
-        if (!rows_ && reads_names()) note_header(line);
+        if (line.starts_with(kMadeByComment)) {
+          made_by_ = line.substr(kMadeByComment.size());
+        } else if (!rows_ && reads_names()) {
+          note_header(line);
+        }
       } else if (!rows_ && !started_ && is_header(line)) {
         started_ = true;
       } else {
@@ -56,6 +60,7 @@ class TextTrajectory {
     }
     out.format = format_;
     if (rows_) rows_->finish(out);
+    out.labels.made_by = std::move(made_by_);
     remark_unread_columns(input_.name(), unread_, PathTable::kPoses, out);
     if (ends_in_number_) {
       out.warn("cut-text",
@@ -190,6 +195,7 @@ class TextTrajectory {
   TrajectoryOptions options_;
   TrajectoryFormat format_;             ///< kAuto before the first line of numbers
   std::optional<PoseColumns> columns_;  ///< columns that a header or a comment has named
+  std::string made_by_;                 ///< see PoseLabels
   std::vector<std::string> unread_;     ///< names of the columns that are not read
   bool started_ = false;                ///< whether a header has been read
   bool ends_in_number_ = false;   ///< whether the file ends in a number, as one that was cut may

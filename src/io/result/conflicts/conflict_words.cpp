@@ -8,12 +8,13 @@
 
 #include "core/util/format.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
 namespace {
 
 std::string length_words(double length, const std::string& unit) {
-  return format_number(*rounded_up(length)) + " " + unit;
+  return format_length(*rounded_up(length)) + " " + unit;
 }
 
 /// A length with so many digits behind the point.
@@ -39,7 +40,7 @@ std::string trim_words(const Conflict& c, const RemedyWords& how) {
     const std::string cut = "a trim of " + length_words(*trim, how.unit) + " " + where;
     const std::string of = how.has_budget ? " for what is closer than the margin" : "";
     return how.body.empty() ? cut + " is enough" + of
-                            : cut + " of body " + how.body + " is enough for that body" + of;
+                            : cut + " of " + body_words(how.body) + " is enough for that body" + of;
   }
   return "";
 }
@@ -51,18 +52,25 @@ const StretchShift* confirmed(const Conflict& c, const RemedyWords& how) {
   return row == rows.end() ? nullptr : &*row;
 }
 
-std::string shift_words(const Conflict& c, const RemedyWords& how) {
-  const auto to = [](bool left) { return left ? " to the left" : " to the right"; };
-  if (const StretchShift* row = confirmed(c, how)) {
-    if (!row->shift) return "";
-    return "a shift of " + format_number(std::abs(*row->shift)) + " " + how.unit +
-           to(*row->shift > 0) + " frees it";
-  }
-  if (!c.own_shift_left && !c.own_shift_right) return "";
+const char* direction_words(bool left) { return left ? " to the left" : " to the right"; }
+
+/// The shift that a search has confirmed; empty where there is none.
+std::string confirmed_words(const Conflict& c, const RemedyWords& how) {
+  const StretchShift* row = confirmed(c, how);
+  if (row == nullptr || !row->shift) return "";
+  return "a shift of " + format_length(std::abs(*row->shift)) + " " + how.unit +
+         direction_words(*row->shift > 0) + " frees it";
+}
+
+/// What the points of the conflict itself need, as a sentence. The shifted vehicle may meet others,
+/// so this says no more where no search has confirmed a shift, and nothing where one was tried.
+std::string own_shift_words(const Conflict& c, const RemedyWords& how) {
+  if (confirmed(c, how) != nullptr || (!c.own_shift_left && !c.own_shift_right)) return "";
   const bool left =
       c.own_shift_left && (!c.own_shift_right || *c.own_shift_left <= *c.own_shift_right);
-  return "a shift of at least " +
-         length_words(left ? *c.own_shift_left : *c.own_shift_right, how.unit) + to(left);
+  return "Its own points need a shift of at least " +
+         length_words(left ? *c.own_shift_left : *c.own_shift_right, how.unit) +
+         direction_words(left) + "; clearway shift says whether one frees it.";
 }
 
 /// The shifts that were tried: "a shift of up to 2 m".
@@ -71,7 +79,7 @@ std::string tried_words(const Conflict& c, const RemedyWords& how) {
     return "a shift of up to " + format_brief(kMostOwnShift / how.metre) + " " + how.unit;
   }
   const ShiftTable& table = *how.shifts;
-  const auto up_to = [&](double most) { return format_number(most) + " " + how.unit; };
+  const auto up_to = [&](double most) { return format_length(most) + " " + how.unit; };
   const double left = table.lateral_to, right = -table.lateral_from;
   if (left == right) return "a shift of up to " + up_to(left);
   std::string text = "a shift of up to ";
@@ -104,6 +112,28 @@ std::string missing_words(const Conflict& conflict, const std::string& unit, dou
          (unit.empty() ? "" : " " + unit);
 }
 
+const char* inner_side_words(Side side) {
+  switch (side) {
+    case Side::kUnknown:
+      return "";
+    case Side::kLeft:
+      return "from its left side";
+    case Side::kRight:
+      return "from its right side";
+    case Side::kAbove:
+      return "from its top";
+    case Side::kBelow:
+      return "from its underside";
+    case Side::kFront:
+      return "from its front";
+    case Side::kBehind:
+      return "from its rear";
+    case Side::kAround:
+      return "from both sides";
+  }
+  return "";
+}
+
 const char* side_words(Side side) {
   switch (side) {
     case Side::kUnknown:
@@ -130,24 +160,31 @@ std::string remedy_words(const Conflict& conflict, const RemedyWords& how) {
   if (conflict.colliding == 0) return "";
   const bool knows_trims = how.conflicts.knows_trims;
   const bool knows_shifts = how.conflicts.knows_shifts || confirmed(conflict, how) != nullptr;
-  const std::string trim = trim_words(conflict, how), shift = shift_words(conflict, how);
-  if (!trim.empty() && !shift.empty()) return trim + ", or " + shift;
-  if (!trim.empty() || !shift.empty()) return trim + shift;
+  const std::string trim = trim_words(conflict, how), shift = confirmed_words(conflict, how);
+  const std::string own = own_shift_words(conflict, how);
+  if (!trim.empty() || !shift.empty()) {
+    return "To pass it: " + trim + (trim.empty() || shift.empty() ? "" : ", or ") + shift + "." +
+           (own.empty() ? "" : " " + own);
+  }
   const std::string tried = tried_words(conflict, how);
-  if (knows_trims && knows_shifts) return "neither a trim nor " + tried + " is known to free it";
-  if (knows_trims) return "no trim is known to free it";
-  return knows_shifts ? "no" + tried.substr(1) + " is known to free it" : "";
+  if (!own.empty()) return (knows_trims ? "No trim is known to free it. " : "") + own;
+  if (knows_trims && knows_shifts) return "Neither a trim nor " + tried + " is known to free it.";
+  if (knows_trims) return "No trim is known to free it.";
+  return knows_shifts ? "No" + tried.substr(1) + " is known to free it." : "";
 }
 
 std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
   const double at = conflict.obstacle_chainage.value_or(conflict.chainage_from);
   std::string text = "conflict " + std::to_string(conflict.id) + ", " + fixed_digits(at, 2) + " " +
                      how.unit + " along the path";
-  if (const std::string side = side_words(conflict.side); !side.empty()) text += ", " + side;
+  const bool is_inside = conflict.least_distance && *conflict.least_distance < 0;
+  const std::string side = is_inside ? inner_side_words(conflict.side) : side_words(conflict.side);
+  if (!is_inside && !side.empty()) text += ", " + side;
   const std::string missing = missing_words(conflict, how.unit, how.metre);
-  if (conflict.least_distance && *conflict.least_distance < 0) {
+  if (is_inside) {
     text += ": " + fixed_digits(-*conflict.least_distance, 3) + " " + how.unit + " deep inside " +
-            (how.nearest.empty() ? "it" : "body " + how.nearest);
+            (how.nearest.empty() ? "it" : body_words(how.nearest)) +
+            (side.empty() ? "" : ", " + side);
   } else if (conflict.colliding == 0 && conflict.least_distance) {
     text += ": " + fixed_digits(*conflict.least_distance, 3) + " " + how.unit +
             " away, which is too close only with the errors";
@@ -155,7 +192,7 @@ std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
     text += missing == "touches" ? ": it touches" : ": " + missing + " are missing";
   }
   const std::string remedy = remedy_words(conflict, how);
-  return text + (remedy.empty() ? "" : ". To pass: " + remedy) + ".";
+  return text + "." + (remedy.empty() ? "" : " " + remedy);
 }
 
 }  // namespace clearway

@@ -42,14 +42,14 @@ struct RemedyWords {
 /// How a conflict of a file is put in words.
 RemedyWords words_about(const Conflict& conflict, const ConflictFile& file);
 
-/// What frees a vehicle from a conflict, such as "a trim of 0.15 m on the left is enough, or a
-/// shift of at least 0.12 m to the right"; a shift that a search has confirmed "frees it". Says so
-/// where nothing of what was tried does. Empty where nothing is known, and for points that are only
-/// near.
+/// What frees a vehicle from a conflict, in sentences: "To pass it: a trim of 0.15 m on the left is
+/// enough." Names only trims and shifts that a search has confirmed; of an own shift it says that
+/// this is what the conflict's own points need. Says so where nothing of what was tried frees the
+/// vehicle. Empty where nothing is known, and for points that are only near.
 std::string remedy_words(const Conflict& conflict, const RemedyWords& how);
 
 /// Where a conflict is, what is missing there, and what frees the vehicle from it: "conflict
-/// 1, 64.1 m along the path, on the left: at least 0.093 m are missing. To pass: ...".
+/// 1, 64.1 m along the path, on the left: at least 0.093 m are missing. To pass it: ...".
 std::string conflict_words(const Conflict& conflict, const RemedyWords& how);
 
 }  // namespace clearway

@@ -72,6 +72,8 @@ std::uint64_t question_hash(const ResultReader& result) {
                      (header.between_poses ? " between" : " at") +
                      (header.ignores_points() ? ignored_text(header) : std::string()) +
                      (header.budget ? json_number(header.budget->clear()) : std::string());
+  for (const auto& floor : header.body_floors) text += floor ? " " + json_number(*floor) : " none";
+  if (header.floor) text += " floor " + json_number(*header.floor);
   for (const Box& box : header.ignore_boxes) text += line_text(box.lo) + line_text(box.hi);
   return xxh64(std::as_bytes(std::span(text)));
 }

@@ -26,6 +26,7 @@
 #include "io/result/export/position_text.hpp"
 #include "io/result/result.hpp"
 #include "io/scans/las/las_writer.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 #include "io/scans/requantize.hpp"
 
@@ -54,6 +55,35 @@ void write_blocks(const File& file, std::size_t rows, WriteRows write_rows) {
     write_rows(blocks[block], first, end);
   });
   for (const TextBuffer& block : blocks) file.write(std::as_bytes(std::span(block.text())));
+}
+
+/// The unit of a result that is not in metres, as a reader of files finds it; empty in metres,
+/// which every reader takes by default, and where the unit is not known.
+std::string unit_to_name(const ResultHeader& header) {
+  const double metres = metres_of(length_unit_of(header.notes.length_unit));
+  return metres == 0 || metres == 1 ? std::string() : symbol_of(FileUnit::exactly(metres));
+}
+
+/// x, y and z with the unit, where it has to be named.
+std::string position_columns(const ResultHeader& header, const std::string& separator) {
+  const std::string name = unit_to_name(header);
+  const std::string unit = name.empty() ? "" : " [" + name + "]";
+  return "x" + unit + separator + "y" + unit + separator + "z" + unit;
+}
+
+/// The CRS of a result. Where only a unit is known, it becomes that of a local system.
+std::string crs_of(const ResultHeader& header) {
+  if (!header.crs_wkt.empty() || unit_to_name(header).empty()) return header.crs_wkt;
+  const LengthUnit unit = length_unit_of(header.notes.length_unit);
+  return std::string("LOCAL_CS[\"unknown\",UNIT[\"") + plural_of(unit) + "\"," +
+         format_digits(metres_of(unit), 17) + "]]";
+}
+
+PlyOutput ply_of(const ResultHeader& header, std::uint64_t points, std::vector<PointField> fields) {
+  PlyOutput out{.points = points, .fields = std::move(fields)};
+  const std::string unit = unit_to_name(header);
+  if (!unit.empty()) out.comments.push_back(std::string(kUnitComment) + unit);
+  return out;
 }
 
 using Quanta = std::vector<std::array<std::int32_t, 3>>;
@@ -128,7 +158,7 @@ class LasSink final : public RowSink<Rows> {
   LasSink(const ResultReader& result, const QuantumBox& bounds, const File& file)
       : result_(result),
         writer_(file, {result.header().quantisation, result.rows<Rows>(), bounds,
-                       result.header().crs_wkt, fields_of<Rows>(result.header())}) {}
+                       crs_of(result.header()), fields_of<Rows>(result.header())}) {}
 
   void write(const Rows& rows) override {
     writer_.write(quanta_of(result_, rows), values_of(result_.header(), rows));
@@ -145,8 +175,8 @@ class PlySink final : public RowSink<Rows> {
  public:
   PlySink(const ResultReader& result, const File& file)
       : result_(result),
-        writer_(file, {.points = result.rows<Rows>(), .fields = fields_of<Rows>(result.header())}) {
-  }
+        writer_(file,
+                ply_of(result.header(), result.rows<Rows>(), fields_of<Rows>(result.header()))) {}
 
   void write(const Rows& rows) override {
     writer_.write(rows.xyz, values_of(result_.header(), rows));
@@ -163,7 +193,12 @@ template <typename Rows>
 class XyzSink final : public RowSink<Rows> {
  public:
   XyzSink(const ResultReader& result, const File& file)
-      : file_(file), position_(result.header().quantisation) {}
+      : file_(file), position_(result.header().quantisation) {
+    if (unit_to_name(result.header()).empty()) return;
+    TextWriter out(file);
+    out << "# " << position_columns(result.header(), " ") << "\n";
+    out.flush();
+  }
 
   void write(const Rows& rows) override {
     write_blocks(file_, rows.xyz.size(), [&](TextBuffer& out, std::size_t first, std::size_t end) {
@@ -206,7 +241,9 @@ class CsvSink final : public RowSink<Rows> {
     out << "source";
     for_each_column<Rows>([&](const auto& column) {
       if (!column.is_in(header_)) return;
-      if (std::string_view(column.dataset) == result_names::kXyz) out << ",x,y,z";
+      if (std::string_view(column.dataset) == result_names::kXyz) {
+        out << "," << position_columns(header_, ",");
+      }
       if (column.field != nullptr) out << "," << column.dataset;
     });
     out << "\n";

@@ -73,8 +73,8 @@ class HeaderParser {
     return words;
   }
 
-  /// Whether a line is a comment or remark, which describes no element. Takes the spacing from a
-  /// comment that gives it.
+  /// Whether a line is a comment or remark, which describes no element. Takes the spacing and the
+  /// unit from comments that give them.
   bool is_remark(const std::vector<std::string_view>& words) {
     if (words.empty() || words[0] == "obj_info") return true;
     if (words[0] != "comment") return false;
@@ -85,6 +85,12 @@ class HeaderParser {
         fail("comment of a model spacing of " + excerpt(words[4]) + "; expected metres above 0");
       }
       header_.model_spacing = *metres;
+    }
+    if (words.size() == 4 && words[1] == "clearway" && words[2] == "unit") {
+      header_.unit = find_unit(words[3]);
+      if (!header_.unit || header_.unit->environment == LengthUnit::kUnknown) {
+        fail("comment of a unit " + excerpt(words[3]) + "; expected m, ft, ift or us-ft");
+      }
     }
     return true;
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/scans/input_buffer.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
 
@@ -45,6 +46,9 @@ struct PlyHeader {
   std::size_t coordinates[3];  ///< indices of the vertices' properties x, y, z, all scalar
   /// Spacing in metres from the comment that begins with kSpacingComment; 0 where there is none.
   double model_spacing = 0;
+  /// Unit of the coordinates from the comment that begins with kUnitComment; null where there is
+  /// none.
+  const NamedUnit* unit = nullptr;
 
   const PlyElement& vertices() const { return elements[vertex]; }
 };

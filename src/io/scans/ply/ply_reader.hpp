@@ -31,6 +31,10 @@ class PlyBodyReader : public PointReader {
       : input_(std::move(input)), header_(std::move(header)) {
     info_.declared_points = header_.vertices().count;
     info_.model_spacing = header_.model_spacing;
+    if (header_.unit) {
+      info_.unit = header_.unit->environment;
+      info_.any_foot = header_.unit->any_foot;
+    }
     for (const PlyElement& element : header_.elements) {
       if (element.name == "face") info_.faces += element.count;
     }

@@ -10,7 +10,7 @@ std::string header_text(const PlyOutput& header) {
   const std::string type =
       header.coordinates == PlyCoordinates::kFloat32 ? "property float " : "property double ";
   std::string text = "ply\nformat binary_little_endian 1.0\n";
-  if (!header.comment.empty()) text += "comment " + header.comment + "\n";
+  for (const std::string& comment : header.comments) text += "comment " + comment + "\n";
   text += "element vertex " + std::to_string(header.points) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += type + axis + "\n";
   for (const PointField& field : header.fields) {

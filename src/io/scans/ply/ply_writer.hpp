@@ -18,8 +18,8 @@ enum class PlyCoordinates { kFloat32, kFloat64 };
 struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
-  std::vector<PointField> fields{};  ///< become properties of type uint, or else double
-  std::string comment{};             ///< comment of one line; empty for none
+  std::vector<PointField> fields{};     ///< become properties of type uint, or else double
+  std::vector<std::string> comments{};  ///< comments of one line each
 };
 
 /// Writes a point cloud as binary little-endian PLY, front to back: the element "vertex" with the

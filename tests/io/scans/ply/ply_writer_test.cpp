@@ -11,7 +11,7 @@ using namespace clearway::test;
 
 TEST_CASE("a double PLY holds header and coordinates bit for bit") {
   const File file = test::nameless_file();
-  PlyWriter writer(file, {.points = 2, .comment = "a body"});
+  PlyWriter writer(file, {.points = 2, .comments = {"a body"}});
   writer.write(std::vector<Vec3>{{0.1, -2, 1e300}});
   writer.write(std::vector<Vec3>{{5, 6, 7}});
   writer.finish();

@@ -35,6 +35,10 @@ def printed_commands(text):
     return re.findall(r"^  (clearway .*)$", text, re.M)
 
 
+def facts_of_page(page):
+    return json.loads(re.search(r'<script[^>]*id="facts"[^>]*>(.*?)</script>', page.read_text(), re.S)[1])
+
+
 def bytes_of(folder, names=FILES):
     return {name: (folder / name).read_bytes() for name in names}
 
@@ -173,6 +177,13 @@ class Finding(Site):
         self.assertTrue(again["nothing_done"])
         self.assertEqual(set(again["reused"].values()), {True})
         self.assertEqual(bytes_of(self.folder / "site"), first)
+        # The page names the path that was given, and shows the warnings that --json has.
+        facts = facts_of_page(self.folder / "site/report.html")
+        given = len((self.folder / "coarse.txt").read_text().splitlines())
+        self.assertIn(f"resample of coarse.txt: {given} given poses among ",
+                      facts["inputs"]["trajectory"]["made_by"])
+        self.assertTrue(facts["inputs"]["environment"]["sources"])
+        self.assertEqual(again["warnings"], facts["warnings"])
         # The way of reading the path is that of the file, and not of the denser one.
         given = self.check(f"scans {coarse} --trajectory-format matrix --lever-arm 0,0,0.01 -o site --force")
         run = next(c for c in printed_commands(given.stdout) if " run " in c)

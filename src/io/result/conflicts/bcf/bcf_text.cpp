@@ -9,6 +9,7 @@
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/markup_text.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
 namespace {
@@ -78,7 +79,7 @@ std::string title_of(const ConflictFile& file, const Conflict& c) {
 /// conflict is seen.
 std::string origin_text(const ConflictFile& file, const Conflict& c) {
   if (!c.body || file.options.bodies.empty()) return "the path's position";
-  return "the position of body " + markup_text(file.header.bodies.at(*c.body));
+  return "the position of " + markup_text(body_words(file.header.bodies.at(*c.body)));
 }
 
 /// The offset of a conflict in words: "1.25 m left of the path's position and 0.5 m above it".
@@ -111,10 +112,10 @@ std::string missing_text(const ConflictFile& file, const Conflict& c) {
          length_text(file, format_brief(*c.encroachment)) + " are missing";
 }
 
-/// What frees the vehicle from the conflict, as a sentence; empty where nothing is known.
+/// What frees the vehicle from the conflict, in sentences; empty where nothing is known.
 std::string remedy_text(const ConflictFile& file, const Conflict& c) {
   const std::string words = remedy_words(c, words_about(c, file));
-  return words.empty() ? "" : " To pass: " + markup_text(words) + ".";
+  return words.empty() ? "" : " " + markup_text(words);
 }
 
 /// What the ledger says of a conflict: " By the ledger it is worse, because the radius is larger;
@@ -131,7 +132,7 @@ std::string ledger_text(const LedgerEntry& entry) {
 std::string description_of(const ConflictFile& file, const Conflict& c) {
   const std::uint64_t near = c.points - c.colliding;
   std::string out = format_count(c.colliding) + (c.colliding == 1 ? " point is" : " points are") +
-                    " closer than " + length_text(file, format_number(file.header.radius)) +
+                    " closer than " + length_text(file, format_length(file.header.radius)) +
                     " to the moving model" +
                     (near > 0 ? ", and " + counted(near, "point") + " may be by the errors." : ".");
   if (c.least_distance && *c.least_distance < 0) {
