@@ -112,7 +112,8 @@ struct SectionPicture {
   const Store* store = nullptr;
   const std::vector<Pose>* path = nullptr;
   std::vector<NamedObstacle> obstacles = {};  ///< names for these points; needs store and path
-  std::string section_name = {}, outline_name = {};  ///< names of the files for the reader
+  /// Names of the files for the reader; empty ones are left out.
+  std::string section_name = {}, outline_name = {}, environment_name = {}, trajectory_name = {};
 };
 
 struct SectionPageOptions : SectionPicture, PageTexts {

@@ -59,6 +59,9 @@ void add_labels(py::module_& module) {
         [member = label.member](const PoseLabels& given) { return label_values(given.*member); },
         label.doc);
   });
+  labels.def_readonly("made_by", &PoseLabels::made_by,
+                      "How clearway trajectory made the file of another one, whose name and number "
+                      "of poses it says; empty for other files.");
 }
 
 void add_read_trajectory(py::module_& module) {

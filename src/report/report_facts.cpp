@@ -73,23 +73,6 @@ std::optional<double> spacing_of(const ResultHeader& header) {
   return header.notes.model_spacing;
 }
 
-/// The first scans that the store was made of; there may be thousands.
-Json names_of_sources(const StoreMetadata& store) {
-  constexpr std::size_t kMostNames = 10;
-  Json out = Json::array();
-  for (const SourceFile& source : store.sources) {
-    if (out.size() == kMostNames) break;
-    out.push_back(source.name);
-  }
-  return out;
-}
-
-/// The days of the scans; null where their files do not say any.
-Json json_of(const ScanDates& dates) {
-  if (!dates.known()) return {};
-  return {{"first", dates.first}, {"last", dates.last}};
-}
-
 Json json_of_inputs(const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
@@ -111,9 +94,7 @@ Json json_of_inputs(const ReportFacts& facts) {
            {{"name", options.environment_name},
             {"points", header.environment_points},
             {"hash", hash_text(header.environment_hash)},
-            {"files", facts.store.reader().metadata().sources.size()},
-            {"sources", names_of_sources(facts.store.reader().metadata())},
-            {"scanned", json_of(facts.store.reader().metadata().dates)},
+            {"scans", json_of_scans(facts.store.reader().metadata())},
             {"box", facts.store.box()},
             {"crs_wkt", header.crs_wkt}}},
           {"model", std::move(model)},
@@ -497,6 +478,20 @@ Json json_of_warnings(const std::vector<Message>& warnings) {
 }
 
 }  // namespace
+
+Json json_of_scans(const StoreMetadata& store) {
+  constexpr std::size_t kMostNames = 10;
+  Json names = Json::array();
+  for (const SourceFile& source : store.sources) {
+    if (names.size() == kMostNames) break;
+    names.push_back(source.name);
+  }
+  const ScanDates& dates = store.dates;
+  return {{"files", store.sources.size()},
+          {"names", std::move(names)},
+          {"first_date", dates.known() ? Json(dates.first) : Json()},
+          {"last_date", dates.known() ? Json(dates.last) : Json()}};
+}
 
 std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) {
   if (unseen.middles.size() <= kMostShownCubes) return group.cubes;

@@ -9,6 +9,7 @@
 #include "clearway/stations.hpp"
 #include "clearway/unsearched.hpp"
 #include "clearway/unseen.hpp"
+#include "io/store/store_metadata.hpp"
 #include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/path_places.hpp"
@@ -68,6 +69,10 @@ inline constexpr std::size_t kMostShownCubes = 1'000'000;
 
 /// How many cubes of a listed group the page draws.
 std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group);
+
+/// The scans that a store was made of: how many `files`, the `names` of the first of them, since
+/// there may be thousands, and the days on which they were made, null where their files do not say.
+Json json_of_scans(const StoreMetadata& store);
 
 /// The facts as one JSON object. docs/guide/report.md describes its keys.
 std::string json_of(const ReportFacts& facts);

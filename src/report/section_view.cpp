@@ -12,6 +12,7 @@
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/store_metadata.hpp"
+#include "report/report_facts.hpp"
 #include "report/section_words.hpp"
 #include "search/section.hpp"
 
@@ -433,6 +434,9 @@ void SectionView::add_question(Json& json) const {
   json["poses"] = data.poses;
   json["load_poses"] = data.load_poses;
   json["length"] = data.chainage.empty() ? 0.0 : data.chainage.back();
+  json["environment_name"] = picture_.environment_name;
+  json["trajectory_name"] = picture_.trajectory_name;
+  json["scans"] = picture_.store ? json_of_scans(picture_.store->reader().metadata()) : Json();
   json["environment_hash"] = hash_text(data.environment_hash);
   json["trajectory_hash"] = hash_text(data.trajectory_hash);
 }

@@ -376,6 +376,8 @@ SectionPageOptions page_of(ReportCommand& both, SectionPage& options, const Sect
   page.overwrite = both.report.overwrite;
   page.heights = options.heights;
   page.section_name = file_name(both.result);
+  if (!both.environment.empty()) page.environment_name = file_name(both.environment);
+  if (!both.trajectory.empty()) page.trajectory_name = file_name(both.trajectory);
   if (!options.load.is_given()) return page;
   if (options.load.table.empty()) {
     page.outline = read_load(options.load, section, metres);

@@ -9,6 +9,7 @@
 #include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/section/section_file.hpp"
 
 namespace clearway {
@@ -28,13 +29,13 @@ void write_preamble(TextWriter& out, const Section& section, SectionTable table,
   const SectionData& data = section.data();
   const SectionParameters& asked = data.parameters;
   out << "# Widths from y = 0 to the border of the nearest blocked cell of "
-      << format_number(asked.cell) << ", for a load from x = " << format_number(asked.rear)
-      << " to " << format_number(asked.front) << "\n# A load must be narrower by more than "
-      << format_number(kept_beside(data))
+      << format_length(asked.cell) << ", for a load from x = " << format_length(asked.rear)
+      << " to " << format_length(asked.front) << "\n# A load must be narrower by more than "
+      << format_length(kept_beside(data))
       << " on each side, and stay as far from the ends of its bands; symmetric_width has that "
          "taken off\n";
   if (data.motion) {
-    out << "# Of this, " << format_number((*data.motion)[1] / 2)
+    out << "# Of this, " << format_length((*data.motion)[1] / 2)
         << " is half of the motion across between two poses\n";
   }
   if (data.unknown) {
@@ -42,14 +43,17 @@ void write_preamble(TextWriter& out, const Section& section, SectionTable table,
            "and "
            "right_end say blocked or not-known\n";
   }
+  if (const LengthUnit unit = length_unit_of(data.length_unit); is_foot(metres_of(unit))) {
+    out << "# Lengths are in " << plural_of(unit) << "\n";
+  }
   out << "# open: nothing blocks that side up to the border of the window\n";
   if (!heights.base && base != 0) {
-    out << "# The base is the bottom of the window, z = " << format_number(base) << "\n";
+    out << "# The base is the bottom of the window, z = " << format_length(base) << "\n";
   }
   if (table == SectionTable::kBoxes) {
     const std::optional<double> from = heights_of_load(section, heights).base;
     if (!heights.base && from) {
-      out << "# The boxes stand at z = " << format_number(*from)
+      out << "# The boxes stand at z = " << format_length(*from)
           << ", the lowest band whose middle is free\n";
     }
   }
@@ -218,9 +222,8 @@ void write_note(TextWriter& out, const std::vector<OutlinePoint>& outline) {
 /// Writes a closed polyline in the form of AutoCAD's release 12, which every program reads. y of
 /// the load runs to the left, so looking forward it is drawn with the opposite sign, and the file
 /// says so.
-void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, bool feet) {
-  write_pair(out, 999,
-             feet ? "Outline of the largest load, feet" : "Outline of the largest load, metres");
+void write_dxf(TextWriter& out, const std::vector<OutlinePoint>& outline, LengthUnit unit) {
+  write_pair(out, 999, std::string("Outline of the largest load, ") + plural_of(unit));
   write_pair(out, 999, kLookingForward);
   write_pair(out, 999, "Outlines for clearway section check have y to the left instead: y = -x");
   write_pair(out, 0, "SECTION");
@@ -257,7 +260,7 @@ void export_section_outline(const Section& section, const std::filesystem::path&
   {
     const File file = File::create(pending.partial());
     TextWriter out(file);
-    write_dxf(out, outline, section.data().length_unit.ends_with("foot"));
+    write_dxf(out, outline, length_unit_of(section.data().length_unit));
     out.flush();
   }
   pending.publish();

@@ -4,6 +4,17 @@ const capital = (text) => text ? text[0].toUpperCase() + text.slice(1) : text;
 /** With a capital letter and a sign at the end, which a question has already. */
 const asSentence = (text) => capital(text) + (/[.?!]$/.test(text) ? "" : ".");
 
+const joined = (words) => words.length < 2 ? words.join("")
+    : `${words.slice(0, -1).join(", ")} and ${words.at(-1)}`;
+
+/** The scans that were made into a store, and when; the first of them by name. */
+function scanWords({ files, names, first_date: first, last_date: last }) {
+  const more = files - names.length, all = joined(more > 0 ? [...names, `${count(more)} more`] : names);
+  const days = first === null ? `, without a date of ${files === 1 ? "its" : "their"} own`
+      : ` of ${first}${last === first ? "" : ` to ${last}`}`;
+  return `${plural(files, "scan")} (${all})${days}`;
+}
+
 /** A link to each part of the page, the texts of the head and the foot, and the button that prints. */
 function buildHead() {
   const { facts } = page;

@@ -40,9 +40,10 @@ function buildQuestion() {
     ["Points", `${count(f.points)}, of which ${count(f.ignored_points)} were left out (${f.ignored})` +
         (f.ignored_cells === null ? "" : `; they alone would block ${plural(f.ignored_cells.blocked, "cell")}`)],
     ["Poses", `${count(f.load_poses)} of ${count(f.poses)} on ${station(f.length)} of path`],
-    ["Environment", make("code", {}, f.environment_hash)], ["Path", make("code", {}, f.trajectory_hash)],
+    ["Environment", f.environment_name && `${f.environment_name}${f.scans ? `: ${scanWords(f.scans)}` : ""} `, make("code", {}, f.environment_hash)],
+    ["Path", f.trajectory_name && `${f.trajectory_name} `, make("code", {}, f.trajectory_hash)],
   ].filter(Boolean);
-  byId("question-body").append(factsTable(...rows.map(([name, value]) => factRow(name, value))));
+  byId("question-body").append(factsTable(...rows.map(([name, ...values]) => factRow(name, ...values))));
   if (check && check.rows.length > 0) byId("question-body").append(...outlinesTable(check));
 }
 

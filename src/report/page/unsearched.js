@@ -16,9 +16,6 @@ function unsearchedWords(i) {
   return `without ${missing.length === 1 ? "body" : "the bodies"} ${joined(missing)}, no pose here`;
 }
 
-const joined = (words) => words.length < 2 ? words.join("")
-    : `${words.slice(0, -1).join(", ")} and ${words.at(-1)}`;
-
 /** "0.00 to 10.00 m and 90.00 to 100.00 m"; of many stretches the first few. */
 function stretchWords(stretches) {
   const most = 6, words = stretches.slice(0, most).map(({ chainage_from: from, chainage_to: to }) =>

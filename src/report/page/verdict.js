@@ -214,7 +214,7 @@ function basisOfVerdict() {
   const { facts } = page, seen = seenFacts();
   if (!seen && !facts.budget) return "";
   const rests = [`The scan: ${plural(facts.inputs.environment.points, "point")} of ` +
-                 `${plural(facts.inputs.environment.files, "file")}, as things stood on that day.`,
+                 `${plural(facts.inputs.environment.scans.files, "file")}, as things stood on that day.`,
                  ...(facts.budget ? budgetBasis(facts)
                      : ["No error budget: points, path and vehicle are taken as exact."]),
                  ...(seen ? seenBasis()
@@ -345,15 +345,6 @@ function crsName(wkt) {
   return name ? name[1] : wkt ? "named in the scans" : "none given";
 }
 
-/** The scans that were made into the environment, and when; the first ten by name. */
-function sourceNames({ files, sources, scanned }) {
-  const more = files - sources.length;
-  const names = joined(more > 0 ? [...sources, `${count(more)} more`] : sources);
-  const days = scanned === null ? `, without a date of ${files === 1 ? "its" : "their"} own`
-      : ` of ${scanned.first}${scanned.last === scanned.first ? "" : ` to ${scanned.last}`}`;
-  return `${plural(files, "scan")} (${names})${days}`;
-}
-
 function questionTable() {
   const { inputs, query, unit } = page.facts;
   const hash = (text) => make("code", {}, text);
@@ -364,7 +355,7 @@ function questionTable() {
             (query.between_poses ? "vehicle, at its poses and between them?"
                                  : "vehicle, at any of its poses?")),
     factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points of ` +
-            `${sourceNames(inputs.environment)}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
+            `${scanWords(inputs.environment.scans)}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
             `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
     inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
         : factRow("Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +

@@ -182,7 +182,7 @@ class Finding(Site):
         given = len((self.folder / "coarse.txt").read_text().splitlines())
         self.assertIn(f"resample of coarse.txt: {given} given poses among ",
                       facts["inputs"]["trajectory"]["made_by"])
-        self.assertTrue(facts["inputs"]["environment"]["sources"])
+        self.assertTrue(facts["inputs"]["environment"]["scans"]["names"])
         self.assertEqual(again["warnings"], facts["warnings"])
         # The way of reading the path is that of the file, and not of the denser one.
         given = self.check(f"scans {coarse} --trajectory-format matrix --lever-arm 0,0,0.01 -o site --force")
