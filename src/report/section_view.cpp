@@ -12,6 +12,7 @@
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/store_metadata.hpp"
+#include "io/store/store_reader.hpp"
 #include "report/report_facts.hpp"
 #include "report/section_words.hpp"
 #include "search/section.hpp"

@@ -136,6 +136,15 @@ const char* symbol_of(LengthUnit unit) { return of(unit).symbol; }
 
 const char* plural_of(LengthUnit unit) { return of(unit).plural; }
 
+std::string local_system(LengthUnit unit) {
+  const double metres = metres_of(unit);
+  const char* name = metres == 0 || metres == 1  ? "metre"
+                     : unit == LengthUnit::kFoot ? "foot"
+                                                 : "US survey foot";
+  return std::string("LOCAL_CS[\"unknown\",UNIT[\"") + name + "\"," +
+         (metres == 0 ? "1" : format_number(metres)) + "]]";
+}
+
 double metres_of(LengthUnit unit) { return of(unit).metres; }
 
 bool is_foot(double metres) {

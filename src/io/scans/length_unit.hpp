@@ -59,6 +59,9 @@ LengthUnit length_unit_of(const std::string& name);
 const char* symbol_of(LengthUnit unit);
 /// The plural of a unit for messages: "metres", "feet", "US survey feet" or "degrees".
 const char* plural_of(LengthUnit unit);
+/// Well-known text of a local system in this unit, for coordinates without a CRS; in metres where
+/// the unit is not known.
+std::string local_system(LengthUnit unit);
 /// The length of a unit in metres; 0 for unknown and for degrees.
 double metres_of(LengthUnit unit);
 /// Whether a unit of this many metres is a foot of any country.

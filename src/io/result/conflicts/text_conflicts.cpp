@@ -6,6 +6,7 @@
 
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -41,16 +42,16 @@ namespace {
 
 /// The name of the coordinate reference system, or of a local one where there is none, because
 /// readers take files that name none for WGS 84.
-std::string crs_name(const std::string& wkt) {
-  if (wkt.empty()) return R"(LOCAL_CS["unknown",UNIT["metre",1]])";
-  const ScanCrs crs = scan_crs_of(wkt);
+std::string crs_name(const ResultHeader& header) {
+  if (header.crs_wkt.empty()) return local_system(unit_of(header));
+  const ScanCrs crs = scan_crs_of(header.crs_wkt);
   return crs.epsg != 0 ? "urn:ogc:def:crs:EPSG::" + std::to_string(crs.epsg) : crs.wkt;
 }
 
 /// The member "crs" as defined by GeoJSON of 2008. RFC 7946 knows only WGS 84, into which a scan in
 /// a local frame cannot be converted.
-Json crs_json(const std::string& wkt) {
-  return {{"type", "name"}, {"properties", {{"name", crs_name(wkt)}}}};
+Json crs_json(const ResultHeader& header) {
+  return {{"type", "name"}, {"properties", {{"name", crs_name(header)}}}};
 }
 
 const char* note_on(const std::string& wkt) {
@@ -89,8 +90,9 @@ Json feature_json(std::uint64_t number, const Conflict& conflict, const Conflict
 void write_geojson(const ConflictFile& conflicts, const File& file) {
   const std::string& wkt = conflicts.header.crs_wkt;
   TextWriter out(file);
-  out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": " << line_text(crs_json(wkt))
-      << ",\n  \"note\": " << json_string(note_on(wkt)) << ",\n  \"summary\": {\n"
+  out << "{\n  \"type\": \"FeatureCollection\",\n  \"crs\": "
+      << line_text(crs_json(conflicts.header)) << ",\n  \"note\": " << json_string(note_on(wkt))
+      << ",\n  \"summary\": {\n"
       << member_lines(summary_of(conflicts)) << "\n  },\n  \"features\": [";
   std::uint64_t number = 0;
   const auto add = [&](const Conflict& of, const char* shape, const Json& geometry) {

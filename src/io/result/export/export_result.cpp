@@ -74,9 +74,7 @@ std::string position_columns(const ResultHeader& header, const std::string& sepa
 /// The CRS of a result. Where only a unit is known, it becomes that of a local system.
 std::string crs_of(const ResultHeader& header) {
   if (!header.crs_wkt.empty() || unit_to_name(header).empty()) return header.crs_wkt;
-  const LengthUnit unit = length_unit_of(header.notes.length_unit);
-  return std::string("LOCAL_CS[\"unknown\",UNIT[\"") + plural_of(unit) + "\"," +
-         format_digits(metres_of(unit), 17) + "]]";
+  return local_system(length_unit_of(header.notes.length_unit));
 }
 
 PlyOutput ply_of(const ResultHeader& header, std::uint64_t points, std::vector<PointField> fields) {

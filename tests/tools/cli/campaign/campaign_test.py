@@ -180,6 +180,8 @@ def plans_are_stable(test):
     again = test.plan(radii=[0.1, "25cm"])
     expect(again.returncode == 0 and "is this plan already" in again.stderr, again.stderr)
     expect((test.path / "plan.json").read_text() == text, "another plan of the same inputs")
+    program("campaign", "report", test.path, "--force")
+    expect("<h2>Radius 25 cm</h2>" in (test.path / "index.html").read_text(), "a blank before a unit")
     other = test.plan()
     expect(other.returncode == 2 and "--force replaces it" in other.stderr, other.stderr)
     expect((test.path / "plan.json").read_text() == text, "a refused plan was written")
