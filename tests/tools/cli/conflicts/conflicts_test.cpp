@@ -415,9 +415,9 @@ TEST_CASE("compare --conflicts does not call a deeper touch of a surface the sam
   check_lacks(street.compare("a", "a").out, "not known");
   const std::string model = "--model car.obj";
   check_outcome(street.compare("a", "b", model), 1, kAnything,
-                "freed by a shift of 0.0 ... 1 conflict is worse");
+                "its own points need a shift of 0.0 ... 1 conflict is worse");
   check_outcome(street.compare("b", "a", model), 0);
   check_outcome(street.compare("a", "b", model + " -o c.csv -o c.html"), 1);
-  check_says(street.bytes("c.csv"), "\nworse,1,1, ... freed by a shift");
-  check_says(street.bytes("c.html"), "freed by a shift");
+  check_says(street.bytes("c.csv"), "\nworse,1,1, ... its own points need a shift");
+  check_says(street.bytes("c.html"), "its own points need a shift");
 }
