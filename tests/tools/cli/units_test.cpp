@@ -143,14 +143,14 @@ TEST_CASE("a path that a command changes is understood as the given one is") {
   scene.write_path("plain.csv", "", 1);
   const struct {
     std::string path, option;
-    const char* header;  ///< of the changed path; empty for matrices
+    const char* header;  ///< of the changed path, or how its matrices end
   } given[] = {{"m.csv", "", "x [m],y [m],z [m],r00"},
                {"ft.csv", "", "x [ft],"},
                {"us-ft.csv", "", "x [us-ft],"},
                {"ift.csv", "", "x [ift],"},
                {"plain.csv", " --trajectory-unit ft", "x [ft],"},
                {"plain.csv", " --trajectory-unit us-ft", "x [us-ft],"},
-               {"plain.csv", "", ""}};
+               {"plain.csv", "", "given poses ... 0 0 0 1\n"}};
   const std::string changes[] = {
       "resample --max-motion 9 --model feet.xyz", "thin --max-motion 1e-6 --model feet.xyz",
       "smooth --within 1e-3 --step 0.1 --model feet.xyz",
