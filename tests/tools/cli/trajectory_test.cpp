@@ -191,8 +191,11 @@ TEST_CASE("resample takes the meaning of ft from the store") {
   require_success(run_program(files.folder, "convert --unit us-ft scan.xyz -o s.h5"));
   const std::string feet = "--trajectory-unit ft --max-motion 0.5";
   require_success(files.run("resample", "path.txt", "feet.txt", feet + " --env s.h5"));
-  // The file is in the store's own foot, so its positions stay as they are.
-  CHECK(has_in_order(files.read("feet.txt"), files.poses));
+  // The file is in the store's own foot, so its positions stay as they are, and the new one says
+  // ft.
+  const TrajectoryOptions in_feet{.allow_non_rigid = true,
+                                  .environment_unit = kMetresPerUsSurveyFoot};
+  CHECK(has_in_order(read_trajectory(files.folder / "feet.txt", in_feet), files.poses));
   check_says(run_program(files.folder, "convert --resume scan.xyz -o s.h5").err,
              "is the store of these inputs already, with coordinates in ");
 }
