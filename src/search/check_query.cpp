@@ -13,6 +13,7 @@
 #include "core/query/body_numbers.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
+#include "core/util/format.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
 

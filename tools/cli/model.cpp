@@ -25,6 +25,7 @@
 #include "io/models/mesh_facts.hpp"
 #include "io/models/model_input.hpp"
 #include "io/models/sample_mesh.hpp"
+#include "io/scans/length_unit.hpp"
 #include "io/scans/ply/ply_header.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 
