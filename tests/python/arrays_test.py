@@ -273,6 +273,7 @@ class Defaults(SceneTest):
         return str(shown).replace(self.new.name, ""), size
 
     def test_every_default_may_be_given(self):
+        self.addCleanup(os.chdir, os.getcwd())
         os.chdir(self.folder)
         self.count = 0
         calls = self.calls()
