@@ -390,7 +390,8 @@ class Check {
   /// stays as wide.
   void choose_corridor() {
     double metres = in_terms_of_check([&] { return corridor_of_question(); });
-    plan_.keep_near(std::max(metres, record_->corridor(key_of_corridor())));
+    corridor_key_ = key_of_corridor();
+    plan_.keep_near(std::max(metres, record_->corridor(corridor_key_)));
   }
 
   /// What the width of the corridor depends on: the scans, and what is searched for in them.
@@ -461,13 +462,14 @@ class Check {
       if (!options_.near || error.remedy() != Remedy::kWiderCorridor) throw;
       spdlog::info("{}. The scans are converted once more, with --within {:g}", error.what(),
                    error.amount());
-      record_->note_corridor(key_of_corridor(), error.amount());
+      record_->note_corridor(corridor_key_, error.amount());
       plan_.keep_near(error.amount());
     }
     Step<ConvertCommand> wider(plan_.convert(true));
     in_terms_of_check([&] { return perform(wider.options()); });
     commands_.clear();
     note_step(kStoreName, wider.words(), false);
+    fill_path();  // it is made for the store
     return search();
   }
 
@@ -618,6 +620,7 @@ class Check {
   CheckPlan plan_;
   std::optional<CheckRecord> record_;
   ordered_json warnings_;  ///< all that the page shows, which are those of all steps
+  ordered_json corridor_key_;  ///< what the question's corridor depends on; null without --near
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();
   std::shared_ptr<const DeviceStart> started_;  ///< null where no GPU was started early

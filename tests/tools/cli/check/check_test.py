@@ -275,6 +275,18 @@ class Finding(Site):
         self.assertEqual(self.pasted_elsewhere(printed_commands(near.stdout), "near"),
                          bytes_of(self.folder / "near"))
 
+    def test_a_corridor_that_proves_too_narrow_is_known_the_next_time(self):
+        self.bend(self.folder / "corners.txt", [(0, 0), (30, 0), (30, 30), (60, 30), (60, 60)])
+        asked = "scans --model model.ply --trajectory corners.txt --near"
+        self.assertIn("The scans are converted once more",
+                      self.check(f"{asked} --radius 0.1 -o site").stderr)
+        self.assertIn("nothing was to be done", self.check(f"{asked} --radius 0.1 -o site").stderr)
+        self.check(f"{asked} --radius 0.3 -o site --force")
+        self.check(f"{asked} --radius 0.3 -o fresh")
+        for name in ("site.h5", "result.h5", "conflicts.csv"):
+            self.assertEqual((self.folder / "site" / name).read_bytes(),
+                             (self.folder / "fresh" / name).read_bytes(), name)
+
     def test_scans_in_feet_and_a_denser_path(self):
         self.coarse_path()
         near = self.near_and_whole("scans --model model.ply --trajectory coarse.txt --radius 3cm "
