@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "clearway/answer.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/labels.hpp"
 #include "io/files/file.hpp"
@@ -42,17 +43,25 @@ bool TrajectoryColumns::names_unit() const { return !symbol_of(unit).empty(); }
 
 namespace {
 
-void write_made_by(const std::string& made_by, TextWriter& out) {
+void write_comments(const std::string& made_by, std::span<const Message> remarks, TextWriter& out) {
+  constexpr std::size_t kMostBytes = 1000;
   if (!made_by.empty()) out << kMadeByComment << made_by << "\n";
+  for (const Message& message : remarks) {
+    if (doubt_of(message) != Doubt::kQuestion) continue;
+    std::string text = message.code + ": " + message.text.substr(0, kMostBytes);
+    std::ranges::replace_if(
+        text, [](unsigned char c) { return c < ' '; }, ' ');
+    out << kDoubtComment << text << "\n";
+  }
 }
 
 }  // namespace
 
 void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress,
-                      const std::string& made_by) {
+                      const std::string& made_by, std::span<const Message> remarks) {
   progress.begin("write", poses.size(), "poses");
   TextWriter out(file);
-  write_made_by(made_by, out);
+  write_comments(made_by, remarks, out);
   for (const Pose& pose : poses) {
     for (std::size_t row = 0; row < 3; ++row) {
       for (std::size_t k = 0; k < 3; ++k) out << pose.rotation[3 * row + k] << " ";
@@ -76,7 +85,7 @@ void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& label
       unit.empty()
           ? UnitFactor(1)
           : UnitFactor(columns.metres_per_unit, columns.unit.metres_in(columns.metres_per_unit));
-  write_made_by(labels.made_by, out);
+  write_comments(labels.made_by, columns.remarks, out);
   if (!columns.path_pose.empty()) out << "path_pose,";
   for_each_label([&](const auto& label) {
     if (!label.of(labels).empty()) out << column_of(label) << ",";
@@ -298,8 +307,12 @@ TrajectoryFile read_without_doubts(const std::filesystem::path& path,
 TrajectoryFile read_trajectory_file(const std::filesystem::path& path,
                                     const TrajectoryOptions& options) {
   TrajectoryFile found = read_without_doubts(path, options);
-  auto doubts = doubts_about(found.poses, found.rotations, path.string());
-  std::move(doubts.begin(), doubts.end(), std::back_inserter(found.remarks));
+  for (Message& doubt : doubts_about(found.poses, found.rotations, path.string())) {
+    // What the path was made of may have had the same fault.
+    const bool known =
+        std::ranges::find(found.remarks, doubt.code, &Message::code) != found.remarks.end();
+    if (!known) found.remarks.push_back(std::move(doubt));
+  }
   return found;
 }
 

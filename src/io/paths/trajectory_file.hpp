@@ -50,12 +50,16 @@ struct TrajectoryColumns {
   /// are, without a unit, where it is not known.
   FileUnit unit = {};
   double metres_per_unit = 1;  ///< metres per unit of the positions that are to be written
+  /// Messages of reading what the path was made of; those that put it in doubt are kept in
+  /// comments. They must outlive the call.
+  std::span<const Message> remarks = {};
 
   bool names_unit() const;
 };
 
 /// Writes a table of poses with a header, and with digits that read_trajectory() reads back to the
-/// same doubles. labels: a column for each list that is not empty, and a comment for made_by.
+/// same doubles. labels: a column for each list that is not empty. Comments have made_by and
+/// the remarks.
 /// Throws ResourceError and Interrupted.
 void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& labels,
                             const TrajectoryColumns& columns, const File& file, Progress& progress);
@@ -64,10 +68,16 @@ void write_trajectory_table(std::span<const Pose> poses, const PoseLabels& label
 /// one.
 inline constexpr std::string_view kMadeByComment = "# made by clearway trajectory ";
 
+/// Start of the comments in which a trajectory keeps the warnings that put in doubt what it was
+/// made of, because its own form may not show the fault any more. They are read as its own
+/// warnings.
+inline constexpr std::string_view kDoubtComment = "# in doubt: ";
+
 /// Writes one pose per line as 16 numbers: its 4 x 4 matrix, row-major, with digits that
 /// read_trajectory() reads back to the same doubles. made_by: see PoseLabels; empty for none.
+/// remarks: as in TrajectoryColumns.
 /// Throws ResourceError and Interrupted.
 void write_trajectory(std::span<const Pose> poses, const File& file, Progress& progress,
-                      const std::string& made_by = {});
+                      const std::string& made_by = {}, std::span<const Message> remarks = {});
 
 }  // namespace clearway

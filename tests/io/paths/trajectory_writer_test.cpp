@@ -30,6 +30,30 @@ TEST_CASE("a written trajectory reads back to the same numbers") {
   CHECK(written_and_read(folder, {}).empty());
 }
 
+TEST_CASE("what puts a path in doubt is kept by the paths that are made of it") {
+  const ScratchFolder folder;
+  const auto path = folder / "path.txt";
+  const std::vector<Pose> poses{translation({1, 2, 3}), translation({4, 5, 6})};
+  constexpr auto kWarning = Message::Severity::kWarning;
+  const std::vector<Message> of_given{{kWarning, "time-order", "a.csv: odd"},
+                                      {kWarning, "quaternion-order", "a.csv: tilts,\nmuch"}};
+  NoProgress progress;
+  for (const bool is_table : {false, true}) {
+    if (is_table) {
+      write_trajectory_table(poses, {.station = {0, 1}}, {.remarks = of_given}, File::create(path),
+                             progress);
+    } else {
+      write_trajectory(poses, File::create(path), progress, "thin of a.csv", of_given);
+    }
+    std::vector<Message> remarks;
+    check_equal(read_trajectory(path, {}, &remarks), poses);
+    REQUIRE(remarks.size() == 1);
+    CHECK(remarks[0].severity == kWarning);
+    check_equal(remarks[0].code, "quaternion-order");
+    check_equal(remarks[0].text, "a.csv: tilts, much");
+  }
+}
+
 TEST_CASE("a pose is written as a row-major 4 x 4 matrix") {
   const ScratchFolder folder;
   NoProgress progress;

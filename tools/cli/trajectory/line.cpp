@@ -79,7 +79,8 @@ void write_line(LineCommand& options) {
   const LineFile made = read_line_file(options.input, options.line);
   for (const Message& remark : made.remarks) log_message(remark);
   ConsoleProgress progress;
-  write_trajectory_table(made.poses, {.station = made.stations}, {.unit = FileUnit::exactly(1)},
+  write_trajectory_table(made.poses, {.station = made.stations},
+                         {.unit = FileUnit::exactly(1), .remarks = made.remarks},
                          File::create(output.partial()), progress);
   output.publish();
   spdlog::info("{}: {} in metres, along {} m of a line of {}", options.output.string(),

@@ -66,8 +66,9 @@ void write_poses(const std::vector<Pose>& poses, const PoseLabels& labels,
   const File file = File::create(path);
   further.unit = given.own_unit();
   further.metres_per_unit = given.metres_per_unit;
+  further.remarks = given.remarks;
   const bool is_table = has_labels(labels) || further.names_unit() || !further.path_pose.empty();
-  if (!is_table) return write_trajectory(poses, file, progress, labels.made_by);
+  if (!is_table) return write_trajectory(poses, file, progress, labels.made_by, given.remarks);
   write_trajectory_table(poses, labels, further, file, progress);
 }
 

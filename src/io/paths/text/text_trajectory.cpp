@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "clearway/answer.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_lines.hpp"
@@ -44,6 +45,8 @@ class TextTrajectory {
       if (is_text_comment(line)) {
         if (line.starts_with(kMadeByComment)) {
           made_by_ = line.substr(kMadeByComment.size());
+        } else if (line.starts_with(kDoubtComment)) {
+          note_doubt(line.substr(kDoubtComment.size()), out);
         } else if (!rows_ && reads_names()) {
           note_header(line);
         }
@@ -74,6 +77,16 @@ class TextTrajectory {
  private:
   [[noreturn]] void fail(const Objection& objection) const {
     refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
+  }
+
+  /// Takes a warning about what the path was made of, as "CODE: TEXT", one of each code.
+  static void note_doubt(std::string_view comment, TrajectoryFile& out) {
+    const std::size_t colon = comment.find(": ");
+    const std::string code(comment.substr(0, colon));
+    const bool known = std::ranges::find(out.remarks, code, &Message::code) != out.remarks.end();
+    if (colon == std::string_view::npos || !is_doubt(code) || known) return;
+    out.remarks.push_back(
+        {Message::Severity::kWarning, code, std::string(comment.substr(colon + 2))});
   }
 
   /// Reads all lines after the first pose in parallel. Returns false, with nothing read, where one
