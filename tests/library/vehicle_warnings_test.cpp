@@ -5,6 +5,7 @@
 
 #include "clearway/clearway.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
 #include "support/road_scene.hpp"
 
