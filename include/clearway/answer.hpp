@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -83,6 +84,9 @@ struct TableSummary {
   /// distance of the profile at its first pose, each where the query asks for it. Among equal
   /// points, the one with the smallest source index is given.
   std::optional<FoundPlace> first_place, least_clearance, least_profile;
+  /// How many of the colliding and near points have each class, ascending by class; empty unless
+  /// the scans have classes.
+  std::map<std::uint8_t, std::uint64_t> classes;
   /// The colliding point with the greatest depth, where depths were asked for and a point is free.
   std::optional<DeepestPoint> deepest;
 };

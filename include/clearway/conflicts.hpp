@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -154,6 +155,10 @@ struct Conflict {
   /// are certainly too close hang together by the gap of the search; otherwise it is possible. None
   /// without a budget.
   std::optional<bool> certain = {};
+  /// The class that most of its points have, of several the smallest; and how many have it. None
+  /// unless the scans have classes.
+  std::optional<std::uint32_t> main_class = {};
+  std::optional<std::uint64_t> main_class_points = {};
 };
 
 /// A group of too few points to be listed as a conflict.
@@ -165,6 +170,19 @@ struct SmallGroup {
   double chainage_from = 0, chainage_to = 0;  ///< chainages of the two poses, as in Conflict
   std::optional<double> station_from = {}, station_to = {};  ///< as in Conflict
 };
+
+/// What a group that spans most of the path probably is, by where it lies. kGround: half of it or
+/// more is in the lowest 0.5 m, left and right of the middle. kInside: all of it lies within the
+/// width and height of the model, left and right of the middle, so that nothing reaches in from
+/// outside.
+enum class GroupPlace { kOther, kGround, kInside };
+
+/// The name of a place, "other", "ground" or "inside".
+inline const char* name_of(GroupPlace place) {
+  return place == GroupPlace::kGround   ? "ground"
+         : place == GroupPlace::kInside ? "inside"
+                                        : "other";
+}
 
 struct Conflicts {
   std::vector<Conflict> listed;  ///< in the order of their ids
@@ -187,6 +205,13 @@ struct Conflicts {
   /// Longest stretch of the path that a single group has before it is cut, in metres.
   double longest_group = 0;
   std::uint64_t longest_group_points = 0;
+  /// Where the points of that group lie when they are first touched, metres above the lowest point
+  /// of the model, or of the body that touches them; and what that says of them. Not known unless
+  /// the group spans half of the path or more and the box of each body is known.
+  std::optional<double> longest_group_height_from = {}, longest_group_height_to = {};
+  GroupPlace longest_group_is = GroupPlace::kOther;
+  /// How many of the colliding and near points have each class, as in TableSummary::classes.
+  std::map<std::uint8_t, std::uint64_t> classes = {};
 };
 
 /// Groups the colliding points of a result into conflicts. poses: the poses of the search.

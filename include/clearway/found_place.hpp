@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "clearway/vec3.hpp"
 
@@ -13,6 +14,8 @@ struct FoundPlace {
   Vec3 xyz{};
   double distance = 0;     ///< metres, if a distance was asked for
   std::uint32_t body = 0;  ///< index of the body, in queries with bodies; not set for a profile
+  /// Class of the point, as the scans have it; nullopt unless they have classes.
+  std::optional<std::uint8_t> point_class = {};
   friend bool operator==(const FoundPlace&, const FoundPlace&) = default;
 };
 

@@ -46,6 +46,9 @@ struct Collisions {
   std::vector<std::uint64_t> depth_source = {};
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
 
+  /// Class of each point, as the scans have it; empty unless they have classes.
+  std::vector<std::uint8_t> point_class = {};
+
   std::size_t size() const { return source.size(); }
 };
 
@@ -59,6 +62,7 @@ struct Nearby {
   /// Index of the body that comes so close at that pose; empty unless there are bodies and first
   /// poses.
   std::vector<std::uint32_t> body = {};
+  std::vector<std::uint8_t> point_class = {};  ///< as in Collisions
 
   std::size_t size() const { return source.size(); }
 };
@@ -70,6 +74,7 @@ struct Clearances {
   std::vector<double> distance;          ///< metres, the least over all poses
   std::vector<std::uint32_t> pose;       ///< the first pose that has this distance
   std::vector<std::uint32_t> body = {};  ///< the body that has this distance; empty without bodies
+  std::vector<std::uint8_t> point_class = {};  ///< as in Collisions
 
   std::size_t size() const { return source.size(); }
 };
@@ -84,6 +89,8 @@ struct Profile {
   std::vector<std::uint64_t> source;
   std::vector<Vec3> xyz;         ///< position of the nearest point; NaN where there is none
   std::vector<double> chainage;  ///< metres along the positions of the path
+  /// Class of the nearest point, as in Collisions; 0 where there is no point.
+  std::vector<std::uint8_t> point_class = {};
 
   std::size_t size() const { return distance.size(); }
 };

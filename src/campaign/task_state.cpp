@@ -16,6 +16,7 @@
 #include "clearway/answer.hpp"
 #include "clearway/error.hpp"
 #include "clearway/ledger.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/query/verdict_words.hpp"
 #include "core/util/exit_code.hpp"
 #include "core/util/format.hpp"
@@ -291,6 +292,17 @@ std::string floor_clause(const ordered_json& facts, const std::string& unit) {
 
 namespace {
 
+std::string classified_clause(const ordered_json& facts) {
+  ClassCounts counts;
+  std::uint64_t points = 0;
+  const ordered_json classes = facts.value("classes", ordered_json::object());
+  for (const auto& [value, of_class] : classes.items()) {
+    counts[static_cast<std::uint8_t>(std::stoul(value))] = of_class.get<std::uint64_t>();
+    points += of_class.get<std::uint64_t>();
+  }
+  return classified_words(counts, points);
+}
+
 std::string ledger_clause(const ordered_json& facts) {
   const std::string words = ledger_words(facts.value("ledger", ordered_json()));
   return words.empty() ? "" : "ledger: " + words;
@@ -301,8 +313,8 @@ std::string ledger_clause(const ordered_json& facts) {
 std::string caveats_of(const ordered_json& facts, const std::string& unit) {
   std::string text;
   for (const std::string& one :
-       {warning_words(facts), ignored_words(facts), floor_clause(facts, unit),
-        open_words(facts, unit), ledger_clause(facts)}) {
+       {warning_words(facts), classified_clause(facts), ignored_words(facts),
+        floor_clause(facts, unit), open_words(facts, unit), ledger_clause(facts)}) {
     if (!one.empty()) text += (text.empty() ? "" : "; ") + one;
   }
   return text;
@@ -558,6 +570,7 @@ ordered_json task_facts(const std::filesystem::path& run_json) {
     if (const ordered_json seen = run.value("seen", ordered_json()); !seen.is_null()) {
       facts["seen"] = seen;
     }
+    if (run.contains("classes")) facts["classes"] = run["classes"];
     return facts;
   } catch (const JsonError& error) {
     throw ResourceError(run_json.string() + ": is not what the run printed: " + error.what());

@@ -133,17 +133,46 @@ constexpr double kMostOfThePath = 0.5;
 
 }  // namespace
 
-std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit) {
+double ground_height(LengthUnit unit) {
+  constexpr double kGround = 0.5;  // metres
+  const double metres = metres_of(unit);
+  return metres > 0 ? kGround / metres : kGround;
+}
+
+bool spans_most_of_the_path(const Conflicts& conflicts) {
   const double length = conflicts.longest_group;
-  if (!(length > 0 && length >= kMostOfThePath * conflicts.path_length)) return {};
-  return {warning("one-long-conflict",
-                  "one group of " + counted(conflicts.longest_group_points, "point") + " spans " +
-                      format_brief(length) + " " + unit + " of " +
-                      format_brief(conflicts.path_length) + " " + unit +
-                      " of path, as wheels do that stand on the ground",
-                  {{"points", static_cast<double>(conflicts.longest_group_points)},
-                   {"length", length},
-                   {"path_length", conflicts.path_length}})};
+  return length > 0 && length >= kMostOfThePath * conflicts.path_length;
+}
+
+std::vector<Message> conflict_warnings(const Conflicts& conflicts, LengthUnit unit) {
+  if (!spans_most_of_the_path(conflicts)) return {};
+  const std::string symbol = symbol_of(unit);
+  Message message =
+      warning("one-long-conflict",
+              "one group of " + counted(conflicts.longest_group_points, "point") + " spans " +
+                  format_brief(conflicts.longest_group) + " " + symbol + " of " +
+                  format_brief(conflicts.path_length) + " " + symbol + " of path",
+              {{"points", static_cast<double>(conflicts.longest_group_points)},
+               {"length", conflicts.longest_group},
+               {"path_length", conflicts.path_length}});
+  if (!conflicts.longest_group_height_from) return {std::move(message)};
+  const double from = *conflicts.longest_group_height_from, to = *conflicts.longest_group_height_to;
+  const std::string lowest = format_brief(from), highest = format_brief(to);
+  message.text += ", " + (lowest == highest ? lowest : lowest + " to " + highest) + " " + symbol +
+                  " above the lowest point of the model";
+  message.numbers.push_back({"height_from", from});
+  message.numbers.push_back({"height_to", to});
+  if (conflicts.longest_group_is == GroupPlace::kGround) {
+    message.text += " and mostly in its lowest " + format_brief(ground_height(unit)) + " " +
+                    symbol + ", as wheels do that stand on the ground";
+    message.numbers.push_back({"ground", 1});
+  } else if (conflicts.longest_group_is == GroupPlace::kInside) {
+    message.text +=
+        " and within it on all sides, as the vehicle does that carried the scanner, or a cable "
+        "along the path";
+    message.numbers.push_back({"inside", 1});
+  }
+  return {std::move(message)};
 }
 
 }  // namespace clearway

@@ -9,6 +9,7 @@
 #include "clearway/pose.hpp"
 #include "clearway/progress.hpp"
 #include "io/result/result.hpp"
+#include "io/scans/length_unit.hpp"
 
 namespace clearway {
 
@@ -36,8 +37,15 @@ struct Searched {
 /// Throws InputError where store, model or bodies, or poses are not those of the search.
 void check_searched(const ResultReader& result, const StoreReader& store, const Searched& given);
 
+/// The height above the lowest point of what moves up to which ground and rails reach, on which it
+/// stands, in the environment's unit; where that is unknown or no length, metres are assumed.
+double ground_height(LengthUnit unit);
+
+/// Whether one group spans half of the path or more.
+bool spans_most_of_the_path(const Conflicts& conflicts);
+
 /// Warns of conflicts that are of little use: "one-long-conflict" for a group that spans most of
-/// the path. unit: the symbol of the unit of length.
-std::vector<Message> conflict_warnings(const Conflicts& conflicts, const std::string& unit);
+/// the path, with what its height says of it. unit: the environment's.
+std::vector<Message> conflict_warnings(const Conflicts& conflicts, LengthUnit unit);
 
 }  // namespace clearway

@@ -55,6 +55,7 @@ CollidingPoints read_near_points(const ResultReader& result, Progress& progress)
     out.source.insert(out.source.end(), rows.source.begin(), rows.source.end());
     out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
     for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
+    out.point_class.insert(out.point_class.end(), rows.point_class.begin(), rows.point_class.end());
     progress.advance(rows.size());
   }
   out.last_pose = out.first_pose;
@@ -72,6 +73,7 @@ CollidingPoints merged(const CollidingPoints& a, const CollidingPoints& b) {
     out.last_pose.push_back(from.last_pose[i]);
     if (!from.body.empty()) out.body.push_back(from.body[i]);
     out.kind.push_back(from.kind[i]);
+    if (!from.point_class.empty()) out.point_class.push_back(from.point_class[i]);
   };
   std::size_t i = 0, k = 0;
   while (i < a.source.size() || k < b.source.size()) {
@@ -91,6 +93,7 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
   out.first_pose.reserve(result.collisions());
   out.last_pose.reserve(result.collisions());
   if (result.header().has_first_bodies()) out.body.reserve(result.collisions());
+  if (result.header().has_classes()) out.point_class.reserve(result.collisions());
   progress.begin("read", result.collisions() + result.near(), "points");
   RowStream<Collisions> stream(result);
   for (Collisions rows; stream.read(rows);) {
@@ -105,6 +108,7 @@ CollidingPoints read_colliding_points(const ResultReader& result, Progress& prog
     out.first_pose.insert(out.first_pose.end(), rows.first_pose.begin(), rows.first_pose.end());
     out.last_pose.insert(out.last_pose.end(), rows.last_pose.begin(), rows.last_pose.end());
     for (const std::uint32_t body : rows.body) out.body.push_back(static_cast<std::uint8_t>(body));
+    out.point_class.insert(out.point_class.end(), rows.point_class.begin(), rows.point_class.end());
     for (const std::uint8_t certain : rows.certain) {
       out.kind.push_back(certain != 0 ? CollidingPoints::kCertain : CollidingPoints::kColliding);
     }

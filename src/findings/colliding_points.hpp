@@ -12,7 +12,7 @@ namespace clearway {
 /// The rows of a result that conflicts are made of.
 struct CollidingPoints {
   static constexpr std::uint64_t kBytesOfPoint =
-      sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 2;
+      sizeof(QuantumPoint) + sizeof(std::uint64_t) + 2 * sizeof(std::uint32_t) + 3;
 
   std::vector<QuantumPoint> quanta;
   std::vector<std::uint64_t> source;  ///< ascending
@@ -24,6 +24,7 @@ struct CollidingPoints {
   /// With an error budget, what it says of each point; otherwise empty.
   enum Kind : std::uint8_t { kNear, kColliding, kCertain };
   std::vector<std::uint8_t> kind;
+  std::vector<std::uint8_t> point_class;  ///< empty unless the scans have classes
 };
 
 /// Reads all colliding points of a result, and with an error budget the near ones too. Throws

@@ -1,5 +1,6 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
@@ -20,6 +21,7 @@
 #include "clearway/vec3.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/body_numbers.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
@@ -70,16 +72,18 @@ constexpr std::uint64_t kMostPoints = 0xffff'fffe;
 
 /// Bytes of a cell: what the grid holds of it, its set, its group, and the count of its points.
 constexpr std::uint64_t kBytesOfCell = CellGrid::kBytesOfCell + 3 * sizeof(std::uint32_t);
-/// Bytes of a point once it is in the grid, including its source, first and last pose, body and
-/// part.
+/// Bytes of a point once it is in the grid, including its source, first and last pose, body, class
+/// and part.
 constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(std::uint64_t) +
-                                              3 * sizeof(std::uint32_t) + 1 + kJoinBytesOfPoint;
+                                              3 * sizeof(std::uint32_t) + 2 + kJoinBytesOfPoint;
 constexpr std::uint64_t kBytesOfUnsortedPoint =
     CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
 /// Bytes of a part, with where it lies across its body, its conflict, which counts twice because
 /// vectors grow to twice their size, and what finding its shifts takes.
 constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + sizeof(PartAcross) + 2 * sizeof(Conflict) +
                                        32 + LeastShift::kBytesOfSet + sizeof(PointsToFree);
+// Classes are counted when the memory of the grid is free again.
+static_assert(sizeof(std::uint64_t) <= CellGrid::kBytesOfPoint);
 // Shifts are found when the memory of joining points is free again, and their trees are made when
 // that of the grid is, too.
 static_assert(sizeof(QuantumPoint) <= kJoinBytesOfPoint);
@@ -370,6 +374,7 @@ class ConflictSearch {
     add_depths(part_of_row);
     for (Conflict& conflict : out_.listed) complete(conflict);
     count_colliding(part_of_row);
+    add_classes(part_of_row);
     add_shifts(std::move(to_free));
     rank(out_);
     return part_of_row;
@@ -405,12 +410,51 @@ class ConflictSearch {
   }
 
   void note_longest(const std::vector<Tally>& groups) {
-    for (const Tally& group : groups) {
-      const double length = length_of(group);
+    std::uint32_t longest = 0;
+    for (std::uint32_t i = 0; i < groups.size(); ++i) {
+      const double length = length_of(groups[i]);
       if (length < out_.longest_group) continue;
-      if (length == out_.longest_group && group.points < out_.longest_group_points) continue;
+      if (length == out_.longest_group && groups[i].points < out_.longest_group_points) continue;
       out_.longest_group = length;
-      out_.longest_group_points = group.points;
+      out_.longest_group_points = groups[i].points;
+      longest = i;
+    }
+    if (spans_most_of_the_path(out_) && !boxes_.empty()) place_longest(longest);
+  }
+
+  /// Finds where the points of a group lie when they are first touched, and what that says of them.
+  void place_longest(std::uint32_t group) {
+    const double low = ground_height(unit_of(reader_.header()));
+    double from = std::numeric_limits<double>::infinity(), to = -from;
+    std::uint64_t in_lowest = 0, left = 0, right = 0;
+    bool is_inside = true;
+    for (std::uint32_t cell = 0; cell < grid_->cells(); ++cell) {
+      if (groups_.of_cell[cell] != group) continue;
+      for (const GroupedPoint& p : std::as_const(*grid_).points(cell)) {
+        const auto body =
+            points_.body.empty() ? std::nullopt : std::optional<std::uint32_t>(points_.body[p.row]);
+        const Pose* pose = pose_of(body, points_.first_pose[p.row]);
+        if (pose == nullptr) continue;
+        const Box box = turned(boxes_[body.value_or(0)], options_.forward, options_.up);
+        const Vec3 place = position(reader_.header().quantisation, p.q[0], p.q[1], p.q[2]);
+        const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
+        const double height = there.z - box.lo.z;
+        from = std::min(from, height);
+        to = std::max(to, height);
+        in_lowest += height <= low ? 1 : 0;
+        ++(there.y > box.centre().y ? left : right);
+        is_inside = is_inside && there.y > box.lo.y && there.y < box.hi.y && there.z > box.lo.z &&
+                    there.z < box.hi.z;
+      }
+    }
+    if (!std::isfinite(from) || !std::isfinite(to)) return;
+    out_.longest_group_height_from = from;
+    out_.longest_group_height_to = to;
+    if (left == 0 || right == 0) return;
+    if (2 * in_lowest >= left + right) {
+      out_.longest_group_is = GroupPlace::kGround;
+    } else if (is_inside) {
+      out_.longest_group_is = GroupPlace::kInside;
     }
   }
 
@@ -598,6 +642,27 @@ class ConflictSearch {
     for (std::size_t row = 0; row < points_.kind.size(); ++row) {
       const std::uint32_t id = conflict_of_row[row];
       if (id != 0 && points_.kind[row] == CollidingPoints::kNear) --out_.listed[id - 1].colliding;
+    }
+  }
+
+  /// Counts the points of each class, and finds the class that most points of each conflict have.
+  void add_classes(std::span<const std::uint32_t> conflict_of_row) {
+    count_classes(points_.point_class, out_.classes);
+    std::vector<std::uint64_t> keys;  // of each point its conflict and, in the low byte, its class
+    for (std::size_t row = 0; row < points_.point_class.size(); ++row) {
+      const std::uint64_t id = conflict_of_row[row];
+      if (id != 0) keys.push_back(id << 8 | points_.point_class[row]);
+    }
+    tbb::parallel_sort(keys);
+    for (auto first = keys.begin(); first != keys.end();) {
+      const auto end = std::upper_bound(first, keys.end(), *first);
+      const auto count = static_cast<std::uint64_t>(end - first);
+      Conflict& conflict = out_.listed[(*first >> 8) - 1];
+      if (count > conflict.main_class_points.value_or(0)) {
+        conflict.main_class = static_cast<std::uint32_t>(*first & 0xff);
+        conflict.main_class_points = count;
+      }
+      first = end;
     }
   }
 

@@ -16,15 +16,15 @@ namespace clearway::python {
 
 /// Columns that the table does not have are None.
 struct CollisionColumns {
-  py::array source, xyz;
+  py::array source, xyz, point_class;
   py::object first_pose = py::none(), last_pose = py::none(), body = py::none(),
              certain = py::none(), depth = py::none(), depth_source = py::none();
 };
 struct ClearanceColumns {
-  py::array source, xyz, distance, pose, body;
+  py::array source, xyz, distance, pose, body, point_class;
 };
 struct ProfileColumns {
-  py::array source, xyz, distance, chainage;
+  py::array source, xyz, distance, chainage, point_class;
 };
 struct UnseenColumns {
   py::array cube, first_pose, group;
@@ -60,6 +60,7 @@ CollisionColumns collision_columns(Table& table, const QueryParameters& asked, b
   CollisionColumns columns;
   columns.source = make(table.source);
   columns.xyz = make(table.xyz);
+  columns.point_class = make(table.point_class);
   if (asked.first_pose) {
     columns.first_pose = make(table.first_pose);
     if (has_bodies) columns.body = make(table.body);
@@ -79,14 +80,14 @@ template <typename Table, typename Make>
 py::object clearance_columns(Table& table, const QueryParameters& asked, const Make& make) {
   if (!(asked.clearance > 0)) return py::none();
   return py::cast(ClearanceColumns{make(table.source), make(table.xyz), make(table.distance),
-                                   make(table.pose), make(table.body)});
+                                   make(table.pose), make(table.body), make(table.point_class)});
 }
 
 template <typename Table, typename Make>
 py::object profile_columns(Table& table, const QueryParameters& asked, const Make& make) {
   if (!(asked.profile > 0)) return py::none();
   return py::cast(ProfileColumns{make(table.source), make(table.xyz), make(table.distance),
-                                 make(table.chainage)});
+                                 make(table.chainage), make(table.point_class)});
 }
 
 template <typename Table, typename Make>

@@ -104,6 +104,9 @@ void add_conflicts(py::module_& module) {
                     "the nearest one at another place; None with fewer than 10 places.")
       .def_readonly("colliding_points", &Found::colliding_points,
                     "How many colliding points the result has, listed or not.")
+      .def_readonly("classes", &Found::classes,
+                    "How many colliding and near points have each class: a dict of numbers by "
+                    "class, which is empty unless the scans have classes.")
       .def_readonly("groups", &Found::groups,
                     "How many groups there are before long ones are cut, small ones included.")
       .def_readonly("small_groups", &Found::small_groups,
@@ -115,6 +118,16 @@ void add_conflicts(py::module_& module) {
                     "The longest stretch of the path that one group covers, metres.")
       .def_readonly("longest_group_points", &Found::longest_group_points,
                     "How many points that longest group has.")
+      .def_readonly("longest_group_height_from", &Found::longest_group_height_from,
+                    "How far the lowest point of that group lies above the lowest point of the "
+                    "model, metres. None unless the group spans half of the path or more.")
+      .def_readonly("longest_group_height_to", &Found::longest_group_height_to,
+                    "How far its highest point lies above the lowest point of the model, metres.")
+      .def_property_readonly(
+          "longest_group_is", [](const Found& c) { return name_of(c.longest_group_is); },
+          "What that group probably is: 'ground' where most of it lies in the lowest 0.5 m, "
+          "'inside' where all of it lies within the model's width and height, as the vehicle does "
+          "that carried the scanner, otherwise 'other'.")
       .def("__len__", [](const Found& c) { return c.listed.size(); })
       .def("__repr__", [](const Found& c) {
         return text("<" + std::to_string(c.listed.size()) + " conflicts of " +

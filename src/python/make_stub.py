@@ -96,6 +96,8 @@ TYPES = {
     "Collisions.last_pose": "_Poses | None",
     "Collisions.body": "_Poses | None",
     "Collisions.certain": "_Flags | None",
+    "point_class": "NDArray[np.uint8]",
+    "FoundPlace.point_class": "int | None",
     "Collisions.depth": "_Doubles | None",
     "Collisions.depth_source": "_Sources | None",
     "UnseenCubes.cube": "NDArray[np.int32]",

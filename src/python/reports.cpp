@@ -134,6 +134,9 @@ void add_counts_of(py::class_<Answer>& answer) {
                     "How many parts of the model have an inside.")
       .def_readonly("colliding_points", &Answer::colliding_points,
                     "How many environment points are closer to the moving model than the radius.")
+      .def_readonly("classes", &Answer::classes,
+                    "How many of the colliding and near points have each class: a dict of numbers "
+                    "by class, which is empty unless the scans have classes.")
       .def_readonly("inside_points", &Answer::inside_points,
                     "How many colliding points are inside a solid of the model at any pose. "
                     "Counted where clearances were asked for.")

@@ -86,6 +86,10 @@ void add_columns(py::module_& module) {
       .def_readonly("depth_source", &CollisionColumns::depth_source,
                     "The index of that free point: n uint64; NO_POINT where no point is free. None "
                     "where the query did not ask for it.")
+      .def_readonly(
+          "point_class", &CollisionColumns::point_class,
+          "The class of each point, as the scans have it: n uint8. Empty unless they have "
+          "classes.")
       .def("__len__", [](const CollisionColumns& c) { return c.source.size(); });
   touched.attr("NO_POINT") = Collisions::kNoPoint;
   py::class_<UnseenColumns>(module, "UnseenCubes",
@@ -112,6 +116,10 @@ void add_columns(py::module_& module) {
       .def_readonly("body", &ClearanceColumns::body,
                     "The body that is so close to the point there, as an index of Result.bodies(): "
                     "n uint32. Empty where there is one model.")
+      .def_readonly(
+          "point_class", &ClearanceColumns::point_class,
+          "The class of each point, as the scans have it: n uint8. Empty unless they have "
+          "classes.")
       .def("__len__", [](const ClearanceColumns& c) { return c.source.size(); });
   py::class_<ProfileColumns> profiles(module, "Profile",
                                       "The least distance between model and environment at every "
@@ -129,6 +137,10 @@ void add_columns(py::module_& module) {
                     "where there is none.")
       .def_readonly("chainage", &ProfileColumns::chainage,
                     "How far along the path each pose is: n float64, metres, from 0.")
+      .def_readonly(
+          "point_class", &ProfileColumns::point_class,
+          "The class of the nearest point at each pose, 0 where there is none: n uint8. Empty "
+          "unless the scans have classes.")
       .def("__len__", [](const ProfileColumns& p) { return p.distance.size(); });
   profiles.attr("NO_POINT") = Profile::kNoPoint;
 }

@@ -110,6 +110,8 @@ hi: the greatest coordinates: 3 numbers, metres.)")
       .def_readonly("distance", &FoundPlace::distance,
                     "The distance between the point and the model at this pose, metres; 0 where "
                     "distances were not asked for.")
+      .def_readonly("point_class", &FoundPlace::point_class,
+                    "The class of the point, as the scans have it. None unless they have classes.")
       .def("__repr__", [](const FoundPlace& p) {
         return py::str("<point {} at pose {}, {} m>").format(p.source, p.pose, p.distance);
       });

@@ -16,6 +16,7 @@
 #include "core/describe/query.hpp"
 #include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/query/verdict_words.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
@@ -215,6 +216,7 @@ Json json_of(const Conflict& conflict, const ReportFacts& facts) {
     if (column.is_in_files) add_finding(out, column, conflict);
   });
   if (conflict.certain) out["class"] = *conflict.certain ? "certain" : "possible";
+  out["classified"] = class_words(conflict);
   out["remedy"] = remedy_of(conflict, facts);
   const auto place = conflict.nearest_source ? facts.points.places.find(*conflict.nearest_source)
                                              : facts.points.places.end();
@@ -258,8 +260,6 @@ Json json_of_conflicts(const ReportFacts& facts) {
           {"small_groups", found.small_groups},
           {"small_points", found.small_points},
           {"first_small", first_small(found)},
-          {"longest_group", found.longest_group},
-          {"longest_group_points", found.longest_group_points},
           {"worst", worst == nullptr ? Json() : Json(worst->id)},
           {"list", std::move(list)}};
 }
@@ -341,6 +341,7 @@ Json json_of_least(const ReportFacts& facts) {
   add_body(out, facts, facts.least->body);
   out["height"] = or_null(facts.least->height);
   out["of"] = facts.least_of;
+  out["point_class"] = class_words(facts.least->point_class.value_or(0));
   return out;
 }
 
@@ -526,6 +527,10 @@ std::string json_of(const ReportFacts& facts) {
   add_budget(out, answer);
   if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
   out["colliding_points"] = facts.result.size();
+  out["classified"] = facts.conflicts == nullptr
+                          ? classified_words(facts.points.summary.classes, facts.result.size())
+                          : classified_words(facts.conflicts->classes,
+                                             facts.result.size() + facts.conflicts->near_points);
   out["unit"] = facts.store.length_unit();
   out["touching"] = kTouching / metres_per_unit(facts.result.reader().header());
   out["least_distance"] = json_of_least(facts);

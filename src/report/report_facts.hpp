@@ -29,6 +29,7 @@ struct LeastDistance {
   std::optional<double> lateral = {}, height = {};
   /// The body of a vehicle that is so near.
   std::optional<std::uint32_t> body = {};
+  std::optional<std::uint8_t> point_class = {};  ///< as of FoundPlace
 };
 
 /// Everything that the page says in words and numbers.

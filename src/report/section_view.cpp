@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/section/section_intrusions.hpp"
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"

@@ -184,7 +184,7 @@ class Report {
         conflicts = find_conflicts(result_, poses_, find, &found_here);
       }
     }
-    add_warnings(conflict_warnings(conflicts, symbol_of(unit_of(result_.reader().header()))),
+    add_warnings(conflict_warnings(conflicts, unit_of(result_.reader().header())),
                  answer_.warnings);
     if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
     if (options_.ledger && options_.ledger->conflicts.size() != conflicts.listed.size()) {
@@ -265,7 +265,8 @@ class Report {
     least_ = {.distance = nearest->distance,
               .pose = nearest->pose,
               .source = nearest->source,
-              .xyz = nearest->xyz};
+              .xyz = nearest->xyz,
+              .point_class = nearest->point_class};
     if (!has_clearance && is_vehicle()) find_nearest_body();
     if (has_clearance && !answer_.bodies.empty()) least_->body = nearest->body;
     place_least();

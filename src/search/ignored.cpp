@@ -18,6 +18,7 @@
 #include "core/query/search_result.hpp"
 #include "core/util/format.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "findings/check_conflicts.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/checks/question.hpp"
@@ -160,12 +161,6 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
   }
 }
 
-double suspicious_height(LengthUnit unit) {
-  constexpr double kHigh = 0.5;  // metres
-  const double metres = metres_of(unit);
-  return metres > 0 ? kHigh / metres : kHigh;
-}
-
 namespace {
 
 /// Finds points that are high above the lowest model point, in the frame of the body that touches
@@ -182,7 +177,7 @@ class Heights {
       }
     };
     for (const MovingBody& body : bodies_) lower_to(body.model.vertices);
-    limit_ = suspicious_height(store.metadata().unit);
+    limit_ = ground_height(store.metadata().unit);
   }
 
   /// Whether a point is well above the model's lowest point at the pose at which it is first
@@ -270,7 +265,7 @@ void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog
   if (high > 0) {
     warn("ignored-high",
          format_count(high) + of_ignored + " would collide more than " +
-             length_text(suspicious_height(unit), unit) +
+             length_text(ground_height(unit), unit) +
              " above the model's lowest point, where no ground is: " +
              "the model hits what was ignored. Ignore the ground alone",
          static_cast<double>(high));

@@ -39,12 +39,6 @@ struct CollidingIgnored {
   std::uint64_t needed_host_bytes = 0, peak_device_bytes = 0;
 };
 
-/// The height above the lowest place of what moves from which on an ignored point is suspicious, in
-/// the environment's unit; where that is unknown or no length, metres are assumed. Ground and rails
-/// are lower, and are ignored because the vehicle stands on them; nobody wants to ignore what it
-/// hits further up.
-double suspicious_height(LengthUnit unit);
-
 /// The query of the second search: exact, with first poses and without distances.
 Query query_of_ignored(const Query& query);
 

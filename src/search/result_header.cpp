@@ -86,7 +86,7 @@ ResultHeader result_header(
   header.bodies = names_of(query);
   header.body_floors = body_floors(query);
   header.ignored = std::move(ignored);
-  if (!header.ignore_classes.empty()) header.classes_hash = metadata.classes->hash;
+  if (metadata.classes) header.classes_hash = metadata.classes->hash;
   header.budget = error_budget_of(query, metadata.quantisation);
   header.notes = {.model_spacing = model_spacing(query),
                   .model_axes = file_axes(query),

@@ -12,6 +12,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "findings/check_conflicts.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/paths/content_hash.hpp"
@@ -277,7 +278,7 @@ class Finder {
     report_.context_wait_seconds += taken.context_wait_seconds;
     const LengthUnit unit = store_.metadata().unit;
     const CellsOfIgnored found =
-        cells_of_ignored(*maps_, maps, lattice_, bins, load_.path_pose, suspicious_height(unit));
+        cells_of_ignored(*maps_, maps, lattice_, bins, load_.path_pose, ground_height(unit));
     data_.ignored_cells = found;
     warn_of_cells_of_ignored(data_, found, report_.blocked, unit, log_);
     if (options_.strict) refuse_warnings(data_.warnings);

@@ -4,6 +4,7 @@
 
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
+#include "findings/check_conflicts.hpp"
 #include "search/checks/question.hpp"
 #include "search/ignored.hpp"
 #include "search/section.hpp"
@@ -76,7 +77,7 @@ void warn_of_cells_of_ignored(const SectionData& section, const CellsOfIgnored& 
   if (found.high > 0) {
     log.warn("ignored-high",
              counted(found.high, "cell") + " of the cross-section, more than " +
-                 length_text(suspicious_height(unit), unit) + " above the lowest place of a load," +
+                 length_text(ground_height(unit), unit) + " above the lowest place of a load," +
                  are(found.high) + because +
                  ". No ground is so high, so a load may pass because of what was ignored. Ignore "
                  "the ground alone",

@@ -63,6 +63,12 @@ Vec3 xyz_of(const Quantisation& quantisation, const std::int32_t (&q)[3]) {
 // put_columns() calls put(column, value_of) for every column that a table has by its meaning;
 // value_of(row) is the value of a row there.
 
+template <typename Columns, typename Put>
+void put_classes(const RowMeaning& meaning, Columns& columns, Put put) {
+  if (!meaning.header.has_classes()) return;
+  put(columns.point_class, [](const auto& row) { return row.point_class; });
+}
+
 /// The columns that colliding points and near ones have in common: which point it is, and by which
 /// body at which pose the model first comes so close to it.
 template <typename Columns, typename Put>
@@ -76,6 +82,7 @@ void put_touched_columns(const RowMeaning& meaning, Columns& columns, Put put) {
   if (meaning.header.has_first_bodies()) {
     put(columns.body, [&](const auto& row) { return meaning.numbers.body_of(row.first_pose); });
   }
+  put_classes(meaning, columns, put);
 }
 
 const Depth& depth_of(const DeepRow& row) { return row.depth; }
@@ -111,6 +118,7 @@ void put_columns(const RowMeaning& meaning, Clearances& columns, Put put) {
   if (!meaning.header.bodies.empty()) {
     put(columns.body, [&](const ClearanceRow& row) { return meaning.numbers.body_of(row.pose); });
   }
+  put_classes(meaning, columns, put);
 }
 
 template <typename Rows, typename Row>
@@ -165,6 +173,18 @@ Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
   return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
 }
 
+std::uint8_t class_of(const StoreReader& store, std::uint64_t entry) {
+  const auto cell = static_cast<std::uint32_t>(entry / store.cell_entries());
+  return store.classes(cell)[static_cast<std::uint32_t>(entry % store.cell_entries())];
+}
+
+/// The classes of a cell's points by their index in it; 0 where the store has none.
+auto classes_of(const StoreReader& store, std::uint32_t cell) {
+  std::optional<PackedChunk<std::uint8_t>> classes;
+  if (store.has_classes()) classes = store.classes(cell);
+  return [classes](std::uint32_t i) { return classes ? (*classes)[i] : std::uint8_t{0}; };
+}
+
 /// Takes the rows of some poses at a time, of which the first is `first_pose`.
 using TakeProfile = std::function<void(const ProfileRows& rows, std::uint64_t first_pose)>;
 
@@ -186,6 +206,9 @@ void for_profile(const StoreReader& store, const ProfileSet& profile,
       rows.source.push_back(point.source);
       rows.xyz.push_back(point.found() ? position_of(store, point.entry)
                                        : Vec3{kNowhere, kNowhere, kNowhere});
+      if (store.has_classes()) {
+        rows.point_class.push_back(point.found() ? class_of(store, point.entry) : 0);
+      }
       rows.chainage.push_back(chainage[pose]);
       if (is_part) rows.squared.push_back(point.squared);
     }
@@ -316,13 +339,14 @@ class ResultRows {
     const LastPoses* last_poses = answer_.last_poses ? &*answer_.last_poses : nullptr;
     const HitSet* certain = answer_.certain ? &*answer_.certain : nullptr;
     const auto rows_of = [&](std::uint32_t cell) {
-      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                               std::uint32_t i) {
+      return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
+                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
         const std::uint32_t touched = first_pose ? hits.first_pose(entry) : 0;
         const std::uint32_t first = meaning_.numbers.pose_of(touched);
         const std::uint32_t last = last_poses != nullptr ? last_poses->at(entry, first) : first;
         const bool is_certain = certain != nullptr && certain->contains(entry);
-        return CollisionRow{source, {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain};
+        return CollisionRow{source,     {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain,
+                            class_at(i)};
       };
     };
     if (!answer_.depths) return gather<CollisionRow>(hits, in, rows_of, take);
@@ -342,10 +366,12 @@ class ResultRows {
     const HitSet& near = *answer_.near;
     const bool first_pose = near.has_first_pose();
     const auto rows_of = [&](std::uint32_t cell) {
-      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                               std::uint32_t i) {
-        return NearRow{
-            source, {q[0][i], q[1][i], q[2][i]}, first_pose ? near.first_pose(entry) : 0};
+      return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
+                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
+        return NearRow{source,
+                       {q[0][i], q[1][i], q[2][i]},
+                       first_pose ? near.first_pose(entry) : 0,
+                       class_at(i)};
       };
     };
     gather<NearRow>(near, in, rows_of, take);
@@ -355,11 +381,14 @@ class ResultRows {
   void for_clearances(const SetCells& in, Take take) {
     const ClearanceSet& clearances = answer_.clearances;
     const auto rows_of = [&](std::uint32_t cell) {
-      return [&, q = store_.coordinates(cell)](std::uint64_t source, std::uint64_t entry,
-                                               std::uint32_t i) {
+      return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
+                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
         const Clearance clearance = clearances.at(entry);
-        return ClearanceRow{
-            source, signed_root(clearance.squared), {q[0][i], q[1][i], q[2][i]}, clearance.pose};
+        return ClearanceRow{source,
+                            signed_root(clearance.squared),
+                            {q[0][i], q[1][i], q[2][i]},
+                            clearance.pose,
+                            class_at(i)};
       };
     };
     gather<ClearanceRow>(clearances, in, rows_of, take);

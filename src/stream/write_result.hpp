@@ -70,6 +70,7 @@ struct CollisionRow {
   std::uint32_t first_pose;  ///< encoded as BodyNumbers does
   std::uint32_t last_pose;
   std::uint8_t certain = 0;  ///< whether the error budget says that it is certainly too close
+  std::uint8_t point_class = 0;
 };
 
 /// A row with the free point that is nearest to it, where depths are asked for.
@@ -81,6 +82,7 @@ struct NearRow {
   std::uint64_t source;
   std::int32_t q[3];
   std::uint32_t first_pose;  ///< encoded as BodyNumbers does
+  std::uint8_t point_class;
 };
 
 struct ClearanceRow {
@@ -88,6 +90,7 @@ struct ClearanceRow {
   double distance;
   std::int32_t q[3];
   std::uint32_t pose;  ///< encoded as BodyNumbers does
+  std::uint8_t point_class;
 };
 
 /// What the encoding has to know besides the rows.

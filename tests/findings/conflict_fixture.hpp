@@ -33,6 +33,7 @@ struct Found {
   std::vector<std::uint32_t> last_pose = {};  ///< empty: the first poses
   std::optional<double> floor = {};
   bool between_poses = false;
+  std::vector<std::uint8_t> point_class = {};  ///< of each row, where the scans have classes
 
   ResultHeader header() const {
     ResultHeader out;
@@ -44,6 +45,7 @@ struct Found {
     out.first_pose = true;
     out.floor = floor;
     out.between_poses = between_poses;
+    if (!point_class.empty()) out.classes_hash = 1;
     out.clearance = clearance;
     out.model_triangles = 12 * solids;
     out.model_solids = solids;
@@ -59,6 +61,7 @@ struct Found {
     Collisions out;
     out.body = body;
     out.last_pose = last_pose;
+    out.point_class = point_class;
     for (std::size_t i = 0; i < quanta.size(); ++i) {
       out.source.push_back(source.empty() ? i : source[i]);
       out.xyz.push_back(position(quantisation, quanta[i][0], quanta[i][1], quanta[i][2]));

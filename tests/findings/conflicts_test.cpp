@@ -1,5 +1,6 @@
 // What Clearway tells about conflicts: numbers, cuts, distances, and what is refused.
 #include "clearway/error.hpp"
+#include "findings/check_conflicts.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "support/compare.hpp"
 
@@ -64,6 +65,66 @@ TEST_CASE("a conflict tells its points, box, centroid, poses and chainage") {
   CHECK(!c.least_distance);
   CHECK(!c.nearest_pose);
   CHECK(!c.encroachment);
+}
+
+TEST_CASE("a conflict along the whole path is told by its height") {
+  // The model of these results is 2 m wide and high, around the position of each pose.
+  struct Case {
+    const char* what;
+    std::int32_t from_y, to_y, z;  // a strip of points along the path, millimetres
+    std::int32_t rise;             // by how much some points are higher
+    GroupPlace is;
+    const char* heights;
+  };
+  const Case cases[] = {
+      {"ground", -1400, 1400, -1200, 0, GroupPlace::kGround, ", -0.2 m above"},
+      {"rails", -700, 700, -950, 0, GroupPlace::kGround, ", 0.05 m above"},
+      {"ground and what stands on it", -1400, 1400, -1200, 2000, GroupPlace::kGround, "to 1.8 m"},
+      {"roof of the scanner's vehicle", -500, 500, 900, 0, GroupPlace::kInside, ", 1.9 m above"},
+      {"bonnet", -600, 300, -200, 40, GroupPlace::kInside, "0.8 to 0.84 m above"},
+      {"mast", -50, 50, 0, 500, GroupPlace::kInside, "1 to 1.5 m above"},
+      {"ceiling", -1400, 1400, 900, 0, GroupPlace::kOther, ", 1.9 m above"},
+      {"rail of a fence", 900, 950, 100, 0, GroupPlace::kOther, ", 1.1 m above"},
+      {"kerb", 900, 1200, -900, 0, GroupPlace::kOther, ", 0.1 m above"},
+      {"wire that hangs", -100, 100, 800, 500, GroupPlace::kOther, "1.8 to 2.3 m above"},
+  };
+  for (const Case& of : cases) {
+    CAPTURE(of.what);
+    Found found = rail(60);
+    found.quanta.clear();
+    for (std::int32_t i = 0; i < 600; ++i) {
+      const std::int32_t y = of.from_y + (of.to_y - of.from_y) * (i % 4) / 3;
+      found.quanta.push_back({100 * i, y, of.z + (i >= 590 ? of.rise : 0)});
+    }
+    ConflictOptions options;
+    options.gap = 2;
+    const Conflicts conflicts = conflicts_of(found, options);
+    CHECK(conflicts.longest_group_is == of.is);
+    const std::vector<Message> warnings = conflict_warnings(conflicts, LengthUnit::kMetre);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].code == "one-long-conflict");
+    const std::string& text = warnings[0].text;
+    check_says(text, "spans 59 m of 60 m of path");
+    check_says(text, of.heights);
+    const auto says = [&](const char* words) { return text.find(words) != std::string::npos; };
+    CHECK(says("wheels") == (of.is == GroupPlace::kGround));
+    CHECK(says("carried the scanner") == (of.is == GroupPlace::kInside));
+  }
+}
+
+TEST_CASE("a conflict has the class of most of its points") {
+  Found found;
+  found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {90'000, 0, 0}, {90'100, 0, 0}};
+  found.point_class = {18, 2, 18, 6, 5};
+  ConflictOptions options;
+  options.min_points = 2;
+  const Conflicts out = conflicts_of(found, options);
+  REQUIRE(out.listed.size() == 2);
+  CHECK(out.listed[0].main_class == 18U);
+  CHECK(out.listed[0].main_class_points == 2U);
+  CHECK(out.listed[1].main_class == 5U);  // of equally many the smallest
+  CHECK(out.listed[1].main_class_points == 1U);
+  CHECK(out.classes == std::map<std::uint8_t, std::uint64_t>{{2, 1}, {5, 1}, {6, 1}, {18, 2}});
 }
 
 TEST_CASE("a group is cut at multiples of the split where it is longer") {

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <random>
 #include <string>
 #include <utility>
@@ -114,6 +115,17 @@ class Cloud {
     CHECK(answer.ignored_colliding_high == expected.high);
   }
 
+  /// Expects the class of each point of a table; `none` stands for the rows without a point.
+  template <typename Rows>
+  void check_classes(const Rows& rows, std::uint64_t none = ~std::uint64_t{0}) const {
+    std::vector<std::uint8_t> expected;
+    for (const std::uint64_t source : rows.source) {
+      expected.push_back(source == none ? std::uint8_t{0} : classes_[source]);
+    }
+    CHECK(expected.size() > 10);
+    CHECK(rows.point_class == expected);
+  }
+
   ScratchFolder folder;
   Query query;
 
@@ -224,6 +236,50 @@ TEST_CASE("a query that ignores nothing has no ignored points that collide") {
   cloud.check(cloud.run("out.h5"), {});
   cloud.query.ignore_classes = {9};  // a class that no point has
   cloud.check(cloud.run("none.h5"), {});
+}
+
+TEST_CASE("each table has the class of its points, whatever searched and in however many parts") {
+  Cloud cloud(9);
+  cloud.query.ignore_classes.clear();
+  cloud.query.ignore_boxes.clear();
+  cloud.query.first_pose = true;
+  cloud.query.clearance = cloud.query.profile = 0.1;
+  cloud.query.error_scan = 0.004;
+  const SearchReport report = cloud.run("whole.h5");
+  const Result result(cloud.folder / "whole.h5");
+  const Collisions collisions = result.collisions();
+  cloud.check_classes(collisions);
+  cloud.check_classes(result.near());
+  cloud.check_classes(result.clearance());
+  cloud.check_classes(result.profile(), Profile::kNoPoint);
+
+  std::map<std::uint8_t, std::uint64_t> counts;
+  for (const std::uint8_t value : collisions.point_class) ++counts[value];
+  for (const std::uint8_t value : result.near().point_class) ++counts[value];
+  CHECK(counts.size() == 5);
+  const auto check = [&](const Answer& answer) {
+    CHECK(answer.classes == counts);
+    CHECK(answer.least_clearance->point_class == report.least_clearance->point_class);
+    CHECK(answer.least_profile->point_class == report.least_profile->point_class);
+    CHECK(answer.first_place->point_class == report.first_place->point_class);
+  };
+  REQUIRE(report.least_profile->point_class);
+  check(report);
+  check(result.answer());
+  check(cloud.run("whole.h5", {.resume = true}));
+
+  std::vector<std::filesystem::path> parts;
+  for (std::uint32_t number = 1; number <= 3; ++number) {
+    parts.push_back(cloud.folder / ("part" + std::to_string(number) + ".h5"));
+    cloud.run(parts.back().filename().string(), {.shard = Shard{number, 3}});
+  }
+  check(merge(parts, cloud.folder / "merged.h5"));
+  CHECK(bytes_of(cloud.folder / "merged.h5") == bytes_of(cloud.folder / "whole.h5"));
+
+  const Session session(cloud.folder / "cloud.h5");
+  const SessionAnswer answer = session.search(cloud.query);
+  CHECK(answer.collisions().point_class == collisions.point_class);
+  check(answer);
 }
 
 TEST_CASE("a vehicle with a floor may touch the ground that is ignored, but nothing above it") {

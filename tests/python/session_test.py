@@ -185,7 +185,7 @@ class Arrays(Sessions):
     def test_they_are_made_without_a_copy(self):
         answer = self.answer()
         one, other = dict(self.columns(answer)), dict(self.columns(answer))
-        self.assertEqual(len(one), 17)
+        self.assertEqual(len(one), 21)
         for name, array in one.items():
             if array.size == 0:  # body, where there are no bodies
                 continue

@@ -28,6 +28,7 @@ Collisions sample_rows(const ResultHeader& header, std::size_t count) {
     rows.xyz.push_back(position(header.quantisation, q, -(q / 2), q ^ 0x55555555));
     if (header.first_pose)
       rows.first_pose.push_back(static_cast<std::uint32_t>(i * 4050343 % header.poses));
+    if (header.has_classes()) rows.point_class.push_back(static_cast<std::uint8_t>(i * 7));
   }
   rows.last_pose = rows.first_pose;
   return rows;

@@ -15,6 +15,7 @@
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
 #include "io/files/json.hpp"

@@ -12,12 +12,14 @@
 #include "cli/support/label_text.hpp"
 #include "core/describe/seen.hpp"
 #include "core/query/ignored_points.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/query/spacing_text.hpp"
 #include "core/query/verdict_words.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/floor_facts.hpp"
 #include "io/scans/length_unit.hpp"
 
@@ -53,6 +55,9 @@ std::string place_text(const Answer& answer, const std::optional<FoundPlace>& pl
     text += ", " + body_words(body);
   if (has_xyz(*place)) {
     text += fmt::format(", point {:.3f} {:.3f} {:.3f}", place->xyz.x, place->xyz.y, place->xyz.z);
+  }
+  if (const std::string of = class_words(place->point_class.value_or(0)); !of.empty()) {
+    text += " of " + of;
   }
   return text;
 }
@@ -138,6 +143,13 @@ std::string seen_clause(const Answer& answer, const PathWords& path, const std::
          " cubes that the model sweeps";
 }
 
+/// A clause about the classes of what collides or is near; empty where they say nothing.
+std::string classified_clause(const Answer& answer) {
+  const std::string words =
+      classified_words(answer.classes, answer.colliding_points + answer.near_points);
+  return words.empty() ? "" : "; " + words;
+}
+
 /// The verdict of a query with an error budget, with what it rests on.
 std::string finding_with_budget(const Answer& answer, const PathWords& path,
                                 const std::string& unit) {
@@ -172,6 +184,7 @@ std::string finding_with_budget(const Answer& answer, const PathWords& path,
              " of errors; " + points;
       break;
   }
+  text += classified_clause(answer);
   if (answer.first_place) {
     text += std::string("; first ") +
             (answer.parameters.between_poses ? "on the way from " : "at ") +
@@ -202,7 +215,7 @@ std::string finding_text(const Answer& answer, const PathWords& path, const std:
   }
   std::string text = name + ignored + ": " +
                      counted(answer.colliding_points, "point is", "points are") + " closer than " +
-                     limit + " to the model on its way";
+                     limit + " to the model on its way" + classified_clause(answer);
   if (answer.first_place) {
     text += std::string("; first ") +
             (answer.parameters.between_poses ? "on the way from " : "at ") +
@@ -225,6 +238,7 @@ ordered_json place_json(const Answer& answer, const std::optional<FoundPlace>& p
     out[axes[k]] = has_xyz(*place) ? ordered_json(place->xyz[k]) : ordered_json(nullptr);
   }
   if (const std::string body = body_of(answer, place); !body.empty()) out["body"] = body;
+  if (place->point_class) out["class"] = *place->point_class;
   for_each_label([&](const auto& label) {
     const auto& values = label.of(path.labels);
     if (!values.empty()) out[label.key] = values[place->pose];
@@ -406,6 +420,7 @@ void add_inside(const Answer& answer, ordered_json& out) {
 void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) {
   out["poses"] = answer.poses;
   out["colliding_points"] = answer.colliding_points;
+  if (!answer.classes.empty()) out["classes"] = json_of(answer.classes);
   out["clearance_points"] = answer.clearance_points;
   out["profile_poses"] = answer.profile_poses;
   out["verdict"] = name_of(answer.verdict());

@@ -147,6 +147,13 @@ inline constexpr std::tuple kConflictColumns = std::tuple_cat(
             .doc =
                 "How far the vehicle has to be shifted to the right at least, or no value as for "
                 "own_shift_left."},
+        FindingColumn{.member = &Conflict::main_class,
+                      .key = "main_class",
+                      .doc = "The class that most points of the conflict have, as the scans have "
+                             "it, such as 18 for high noise; only where they have classes."},
+        FindingColumn{.member = &Conflict::main_class_points,
+                      .key = "main_class_points",
+                      .doc = "How many of the conflict's points have that class."},
         FindingColumn{
             .member = &Conflict::certain,
             .key = "certain",

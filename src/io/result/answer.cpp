@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clearway/result.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "io/result/result.hpp"
 
@@ -25,6 +26,18 @@ void keep_deepest(const DeepestPoint& point, std::optional<DeepestPoint>& deepes
   if (!deepest || point.depth > deepest->depth) deepest = point;
 }
 
+/// The class of a row's point; nullopt where the scans have none.
+template <typename Rows>
+std::optional<std::uint8_t> class_of(const Rows& rows, std::size_t i) {
+  return rows.point_class.empty() ? std::nullopt : std::optional(rows.point_class[i]);
+}
+
+/// The body of a row; 0 for one model.
+template <typename Rows>
+std::uint32_t body_of(const Rows& rows, std::size_t i) {
+  return rows.body.empty() ? 0 : rows.body[i];
+}
+
 template <typename Rows>
 void summarise_table(const ResultReader& result, TableSummary& summary) {
   RowStream<Rows> stream(result);
@@ -35,6 +48,7 @@ void summarise_table(const ResultReader& result, TableSummary& summary) {
 
 void summarise(const Collisions& rows, TableSummary& summary) {
   summary.colliding_points += rows.size();
+  count_classes(rows.point_class, summary.classes);
   for (std::size_t i = 0; i < rows.depth.size(); ++i) {
     if (rows.depth_source[i] == Collisions::kNoPoint) continue;
     keep_deepest({rows.depth[i], rows.source[i], rows.xyz[i], rows.depth_source[i]},
@@ -43,11 +57,14 @@ void summarise(const Collisions& rows, TableSummary& summary) {
   const auto earliest = std::ranges::min_element(rows.first_pose);
   if (earliest == rows.first_pose.end()) return;
   const auto i = static_cast<std::size_t>(earliest - rows.first_pose.begin());
-  keep_least({rows.source[i], *earliest, rows.xyz[i], 0, rows.body.empty() ? 0 : rows.body[i]},
+  keep_least({rows.source[i], *earliest, rows.xyz[i], 0, body_of(rows, i), class_of(rows, i)},
              summary.first_place, is_earlier);
 }
 
-void summarise(const Nearby& rows, TableSummary& summary) { summary.near_points += rows.size(); }
+void summarise(const Nearby& rows, TableSummary& summary) {
+  summary.near_points += rows.size();
+  count_classes(rows.point_class, summary.classes);
+}
 
 void summarise(const Clearances& rows, TableSummary& summary) {
   summary.clearance_points += rows.size();
@@ -57,7 +74,7 @@ void summarise(const Clearances& rows, TableSummary& summary) {
   if (nearest == rows.distance.end()) return;
   const auto i = static_cast<std::size_t>(nearest - rows.distance.begin());
   keep_least(
-      {rows.source[i], rows.pose[i], rows.xyz[i], *nearest, rows.body.empty() ? 0 : rows.body[i]},
+      {rows.source[i], rows.pose[i], rows.xyz[i], *nearest, body_of(rows, i), class_of(rows, i)},
       summary.least_clearance, is_nearer);
 }
 
@@ -65,9 +82,9 @@ void summarise(const Profile& rows, TableSummary& summary, std::uint64_t first_p
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows.source[i] == Profile::kNoPoint) continue;
     ++summary.profile_poses;
-    keep_least(
-        {rows.source[i], static_cast<std::uint32_t>(first_pose + i), rows.xyz[i], rows.distance[i]},
-        summary.least_profile, is_nearer);
+    keep_least({rows.source[i], static_cast<std::uint32_t>(first_pose + i), rows.xyz[i],
+                rows.distance[i], 0, class_of(rows, i)},
+               summary.least_profile, is_nearer);
   }
 }
 
@@ -77,6 +94,7 @@ void add_summary(const TableSummary& later, TableSummary& summary) {
   summary.clearance_points += later.clearance_points;
   summary.inside_points += later.inside_points;
   summary.profile_poses += later.profile_poses;
+  for (const auto& [value, points] : later.classes) summary.classes[value] += points;
   const auto keep = [](const std::optional<FoundPlace>& place, std::optional<FoundPlace>& least,
                        auto is_less) {
     if (place) keep_least(*place, least, is_less);
@@ -149,12 +167,13 @@ Answer counted_answer(const ResultReader& result) {
 Answer answer_of(const ResultReader& result) {
   Answer answer = counted_answer(result);
   TableSummary summary;
-  if (result.header().first_pose || result.header().depth) {
+  const ResultHeader& header = result.header();
+  if (header.first_pose || header.depth || header.has_classes()) {
     summarise_table<Collisions>(result, summary);
   } else {
     summary.colliding_points = result.collisions();  // no row says more
   }
-  summary.near_points = result.near();
+  summarise_table<Nearby>(result, summary);
   summarise_table<Clearances>(result, summary);
   std::uint64_t pose = 0;
   RowStream<ProfileRows> stream(result);

@@ -119,20 +119,12 @@ std::string bodies_text(const ResultHeader& header) {
   return text.empty() ? "one model" : text;
 }
 
-std::string ignored_lists_text(const ResultHeader& header) {
-  if (!header.ignores_points()) return "none";
-  std::string text;
-  if (!header.ignore_classes.empty()) {
-    QueryParameters classes;
-    classes.ignore_classes = header.ignore_classes;
-    text = ignored_text(classes) + " of classes with hash " + hash_text(header.classes_hash);
-  }
-  if (header.ignore_boxes.empty()) return text;
-  return text + (text.empty() ? "" : ", ") + "boxes " + boxes_text(header.ignore_boxes);
+std::string classes_text(const ResultHeader& header) {
+  return header.has_classes() ? "hash " + hash_text(header.classes_hash) : "none";
 }
 
-/// The lists of what was to be ignored in words, whatever classes the environment has.
-std::string asked_to_ignore_text(const ResultHeader& header) {
+/// The lists of what was to be ignored in words.
+std::string ignored_lists_text(const ResultHeader& header) {
   if (!header.ignores_points()) return "none";
   const std::string boxes =
       header.ignore_boxes.empty() ? "" : ": " + boxes_text(header.ignore_boxes);
@@ -289,8 +281,9 @@ TableComparison compare_tables(const ResultReader& a, const ResultReader& b) {
         bool same = true;
         for_each_column<Rows>([&](const auto& column) {
           const auto in_a = from_a.find(column.values), in_b = from_b.find(column.values);
-          const bool is_body = std::string_view(column.dataset) == result_names::kBody;
-          if (in_a && in_b && (bodies || !is_body)) same = same && *in_a == *in_b;
+          const std::string_view what = column.dataset;
+          if (what == result_names::kClass || (what == result_names::kBody && !bodies)) return;
+          if (in_a && in_b) same = same && *in_a == *in_b;
         });
         if (!same) ++out.differing;
       });
@@ -325,7 +318,7 @@ ProfileComparison compare_profiles(const ResultReader& a, const ResultReader& b)
 std::vector<QueryDifference> question_differences(const ResultHeader& a, const ResultHeader& b) {
   Differences out;
   add_question(a, b, out);
-  out.add("ignored points", asked_to_ignore_text(a), asked_to_ignore_text(b));
+  out.add("ignored points", ignored_lists_text(a), ignored_lists_text(b));
   out.add("CRS", crs_text(a), crs_text(b));
   return out.take();
 }
@@ -333,6 +326,7 @@ std::vector<QueryDifference> question_differences(const ResultHeader& a, const R
 std::vector<QueryDifference> query_differences(const ResultHeader& a, const ResultHeader& b) {
   Differences out;
   out.add("environment", environment_text(a), environment_text(b));
+  out.add("classes", classes_text(a), classes_text(b));
   add_question(a, b, out);
   out.add("ignored points", ignored_lists_text(a), ignored_lists_text(b));
   out.add("quantisation", quantisation_text(a.quantisation), quantisation_text(b.quantisation));

@@ -47,7 +47,8 @@ struct TableComparison {
   std::uint64_t in_a = 0, in_b = 0;
   std::uint64_t common = 0, only_in_a = 0, only_in_b = 0;
   /// Number of common points that differ in a column that both results have: distance, pose,
-  /// coordinates, or the body where both have the same bodies.
+  /// coordinates, or the body where both have the same bodies. The class does not count, because it
+  /// is no part of the answer.
   std::uint64_t differing = 0;
 
   bool equal() const { return only_in_a == 0 && only_in_b == 0 && differing == 0; }

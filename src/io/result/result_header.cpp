@@ -92,7 +92,6 @@ void write_ignored(const hdf5::Id& file, const ResultHeader& header) {
   hdf5::write_dataset<std::uint64_t>(group, names::kBoxPoints, header.ignored.in_boxes);
   hdf5::write_number(file, names::kIgnoredPoints, header.ignored.points);
   hdf5::write_number(file, names::kIgnoredHash, hash_of(header));
-  hdf5::write_number(file, names::kClassesHash, header.classes_hash);
 }
 
 /// Reads the group /ignored and its attributes into `header`. name: the file's, for messages.
@@ -109,7 +108,6 @@ void read_ignored(const hdf5::Id& file, const std::string& name, ResultHeader& h
   header.ignored.in_boxes =
       hdf5::read_dataset<std::uint64_t>(group, names::kBoxPoints, boxes, 0, name);
   header.ignored.points = hdf5::read_number<std::uint64_t>(file, names::kIgnoredPoints, name);
-  header.classes_hash = hdf5::read_number<std::uint64_t>(file, names::kClassesHash, name);
   if (hash_of(header) != hdf5::read_number<std::uint64_t>(file, names::kIgnoredHash, name)) {
     refuse(name, "group 'ignored' is damaged (its hash is not the one recorded)");
   }
@@ -233,6 +231,7 @@ using Q = ResultQuestion;
 /// names.
 constexpr std::tuple kQuestion{Field{&Q::environment_points, "environment_points"},
                                Field{&Q::environment_hash, "environment_hash"},
+                               Field{&Q::classes_hash, "classes_hash"},
                                Field{&Q::model_points, "model_points"},
                                Field{&Q::model_hash, "model_hash"},
                                Field{&Q::model_triangles, "model_triangles"},

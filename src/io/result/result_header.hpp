@@ -48,12 +48,14 @@ struct ResultQuestion : QueryParameters {
   std::vector<std::optional<double>> body_floors = {};
   /// Numbers of points for ignore_classes and ignore_boxes, whose order is that of sort_ignored().
   IgnoredPointCounts ignored{};
-  /// Hash of the classes of all points; 0 where no class is ignored.
+  /// Hash of the classes of all points, which the tables have a column of; 0 where the scans have
+  /// none.
   std::uint64_t classes_hash = 0;
   /// The error budget, if the query has one. It decides where /near ends.
   std::optional<ErrorBudget> budget = {};
 
   bool has_first_bodies() const { return first_pose && !bodies.empty(); }
+  bool has_classes() const { return classes_hash != 0; }
   friend bool operator==(const ResultQuestion&, const ResultQuestion&) = default;
 };
 

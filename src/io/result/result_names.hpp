@@ -22,6 +22,7 @@ inline constexpr const char* kDepth = "depth";
 inline constexpr const char* kDepthSource = "depth_source";
 inline constexpr const char* kBody = "body";
 inline constexpr const char* kCertain = "certain";
+inline constexpr const char* kClass = "class";
 
 inline constexpr const char* kNearGroup = "near";
 inline constexpr const char* kNearHash = "near_hash";
@@ -54,7 +55,6 @@ inline constexpr const char* kBoxes = "boxes";  // one row per box: least x, y, 
 inline constexpr const char* kBoxPoints = "box_points";
 inline constexpr const char* kIgnoredPoints = "ignored_points";
 inline constexpr const char* kIgnoredHash = "ignored_hash";  // hash of the group's datasets
-inline constexpr const char* kClassesHash = "classes_hash";
 
 inline constexpr const char* kFloorColliding = "floor_colliding";
 inline constexpr const char* kBodies = "bodies";  // names, one per line

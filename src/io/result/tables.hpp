@@ -78,6 +78,8 @@ void check_with_rows(const RowsRead&, const char*, std::span<const T>) {}
 
 /// For columns that no result of their table lacks.
 inline bool in_every_result(const ResultHeader&) { return true; }
+/// For the classes of points.
+inline bool has_classes(const ResultHeader& header) { return header.has_classes(); }
 
 /// The order of tables of points: kOrder is the column by which rows ascend, and may_follow() says
 /// whether a value may stand in the row after another.
@@ -120,7 +122,9 @@ struct Table<Collisions> : AscendingSources<Collisions> {
                            "distance to nearest free point"},
       Column<Rows, std::uint64_t>{result_names::kDepthSource, &Rows::depth_source,
                                   [](const ResultHeader& h) { return h.depth; },
-                                  check_with_rows<std::uint64_t>, "index of that free point"}};
+                                  check_with_rows<std::uint64_t>, "index of that free point"},
+      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+                                 check_with_rows<std::uint8_t>, "class of the point"}};
 
   /// Throws InputError where the columns of a row contradict each other.
   static void check(const RowsRead& read, const Rows& rows);
@@ -142,7 +146,9 @@ struct Table<Nearby> : AscendingSources<Nearby> {
                                   "first pose that is near"},
       Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
                                   [](const ResultHeader& h) { return h.has_first_bodies(); },
-                                  check_bodies, "body of that pose"}};
+                                  check_bodies, "body of that pose"},
+      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+                                 check_with_rows<std::uint8_t>, "class of the point"}};
 
   static void check(const RowsRead&, const Rows&) {}
 };
@@ -164,7 +170,9 @@ struct Table<Clearances> : AscendingSources<Clearances> {
                                   "pose that has the distance"},
       Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
                                   [](const ResultHeader& h) { return !h.bodies.empty(); },
-                                  check_bodies, "body of that pose"}};
+                                  check_bodies, "body of that pose"},
+      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+                                 check_with_rows<std::uint8_t>, "class of the point"}};
 
   static void check(const RowsRead&, const Rows&) {}
 };
@@ -186,7 +194,9 @@ struct Table<ProfileRows> {
                            check_chainages},
       Column<Rows, double>{result_names::kSquared, &Rows::squared,
                            [](const ResultHeader& h) { return h.part.has_value(); },
-                           check_with_rows<double>}};
+                           check_with_rows<double>},
+      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+                                 check_with_rows<std::uint8_t>}};
 
   // The order, as in AscendingSources, but several poses may be at the same place.
   static constexpr auto kOrder = &Rows::chainage;

@@ -50,6 +50,7 @@ function conflictFacts(conflict) {
   }
   if (conflict.remedy) rows.push(["Remedy", conflict.remedy]);
   if (page.facts.shifts) rows.push(["Frees it", freedWords(conflict)]);
+  if (conflict.classified) rows.push(["Classes", conflict.classified]);
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
              nearestPoseWords(conflict)]);

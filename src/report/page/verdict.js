@@ -114,6 +114,9 @@ function nearnessText({ encroachment, encroachment_is: bound, least_distance: di
   return words === "touches" ? ": it touches the vehicle" : `: ${words} of ${radius} are missing`;
 }
 
+/** What the points are classified as, where that says anything. */
+const classifiedText = ({ classified }) => classified ? ` ${classified}.` : "";
+
 /** Where the worst conflict is, and what can be done about it. */
 function worstSentence(worst, radius) {
   const place = worst.least_distance === null ? "" :
@@ -121,6 +124,7 @@ function worstSentence(worst, radius) {
   return `The worst place is conflict ${worst.id}, at chainage ${placeWords(stationOf(worst))}` +
       `${isInside(worst.least_distance) ? "" : after(sideWords(worst.side))}${bodyWords(worst)}` +
       `${nearnessText(worst, radius)}.${place}` +
+      (page.facts.conflicts.count > 1 ? classifiedText(worst) : "") +
       (worst.remedy ? ` ${worst.remedy}` : "");
 }
 
@@ -168,7 +172,8 @@ function budgetSentence({ verdict, margins, query, reason_words: reasons, ...fac
                        `and ${sure}.`
       : `${plural(facts.colliding_points, "point")} ` +
       `${facts.colliding_points === 1 ? "is" : "are"} closer than the margin of ${radius} to the ` +
-      `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.`;
+      `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.` +
+      classifiedText(facts);
   if (verdict === "conflict") {
     return `${plural(facts.certain_points, "point")} ` +
            `${facts.certain_points === 1 ? "is" : "are"} certainly too close, even with ` +
@@ -309,7 +314,7 @@ function verdictSentences() {
             `${joined(facts.reason_words)}.`, leastSentence()];
   }
   const where = facts.conflicts ? placesText(facts.conflicts) : "";
-  const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}`;
+  const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}${classifiedText(facts)}`;
   return [first, worst ? worstSentence(worst, radius) : leastSentence()];
 }
 

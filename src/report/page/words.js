@@ -135,7 +135,8 @@ function nearestPointSentence({ point, ...of }, distance) {
   if (!point) return "";
   const where = [isInside(distance) ? "" : sideWords(of.side), offsetWords(of)].filter(Boolean).join(", ");
   const which = isInside(distance) ? "deepest" : "nearest";
-  return ` The ${which} point is ${where}${where ? "," : ""} at ${coordinates(point)}.`;
+  return ` The ${which} point is ${where}${where ? "," : ""} at ${coordinates(point)}` +
+      `${of.point_class ? ` and of ${of.point_class}` : ""}.`;
 }
 
 function leastSentence() {

@@ -83,6 +83,8 @@ TEST_CASE("a vehicle's result may ignore points too") {
   vehicle.header.ignore_classes = {2, 7};
   vehicle.header.ignored = {.points = 9, .of_classes = {4, 5}, .in_boxes = {}};
   vehicle.header.classes_hash = 77;
+  vehicle.rows.point_class.assign(vehicle.rows.size(), 7);
+  vehicle.near.point_class.assign(vehicle.near.size(), 6);
   vehicle.write("out.h5");
   const ResultReader result(vehicle.folder / "out.h5");
   CHECK(same_answer(result.header(), vehicle.header));

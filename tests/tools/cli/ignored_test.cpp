@@ -79,6 +79,69 @@ TEST_CASE("a verdict says what lies below the floor, and so does every output") 
   CHECK(json_of(garden.search("--json -o d.h5"))["floor"].is_null());
 }
 
+TEST_CASE("verdict, conflicts and all outputs say what the colliding points are classified as") {
+  const Garden garden;
+  const std::string words = "40 of 40 points are classified as low vegetation (3)";
+  const Outcome searched = garden.search("--first-pose --clearance 0.2 --profile 2 -o a.h5");
+  check_says(searched.out, "conflict: 40 points are closer than 0.1 m to the model on its way; " +
+                               words + "; first at pose");
+  check_says(searched.out, "of low vegetation (3)");
+  const std::string path = " --trajectory path.txt ";
+  const std::string table = require_success(garden.run("conflicts a.h5" + path)).out;
+  check_says(table, "10 m of path; " + words);
+  check_says(table, "classified");
+  const Outcome files = garden.run("conflicts a.h5" + path +
+                                   "-o a.csv -o a.json -o a.geojson -o a.gpkg -o a.bcf --json");
+  check_json(json_of(require_success(files)), R"({"classes": {"3": 40}})");
+  check_says(garden.bytes("a.csv"), "main_class,main_class_points");
+  check_json(json::parse(garden.bytes("a.json")),
+             R"({"conflicts": {"0": {"main_class": 3, "main_class_points": 40}}})");
+  check_says(garden.bytes("a.geojson"), "\"main_class\"");
+  check_says(garden.bytes("a.gpkg"), "main_class_points");
+  require_success(garden.run("report a.h5 --env site.h5 --model car.xyz" + path + "-o a.html"));
+  check_says(garden.bytes("a.html"), "\"classified\":\"" + words);
+  require_success(garden.run("export a.h5 -o p.csv"));
+  check_says(garden.bytes("p.csv"), "source,x,y,z,first_pose,class\n");
+  require_success(garden.run("export a.h5 -o p.las"));
+  require_success(garden.run("convert p.las -o p.h5"));
+  check_says(garden.run("info p.h5").out, "3 (low vegetation): 40 points");
+  require_success(garden.run("export a.h5 --what profile -o profile.csv"));
+  check_says(garden.bytes("profile.csv"), "source,x,y,z,class\n");
+  check_json(json_of(garden.search("--json --profile 2 -o b.h5")),
+             R"({"classes": {"3": 40}, "least_profile": {"class": 3}})");
+  check_outcome(garden.run("verify a.h5"), 0);
+}
+
+TEST_CASE("a verdict says nothing of classes that say nothing, and of none") {
+  Garden garden;
+  for (std::uint8_t& value : garden.las.bytes_of_class) value = value == 3 ? 1 : 6;
+  garden.put("all.las", garden.las.build());
+  require_success(garden.run("convert all.las -o plain.h5"));
+  const auto is_silent = [](const Outcome& outcome) {
+    return require_success(outcome).out.find("classified") == std::string::npos;
+  };
+  CHECK(is_silent(garden.search("--first-pose -o a.h5", "plain.h5")));
+  CHECK(is_silent(garden.run("conflicts a.h5 --trajectory path.txt")));
+  CHECK(is_silent(
+      garden.run("run --env wall.h5 --model car.xyz --trajectory path.txt --radius 1.05 -o b.h5")));
+}
+
+TEST_CASE("a verdict names up to three classes, and says how many points have others") {
+  Garden garden;
+  std::uint32_t i = 0;
+  for (std::uint8_t& value : garden.las.bytes_of_class) {
+    if (value != 3) continue;
+    value = i < 20 ? 18 : i < 30 ? 1 : i < 35 ? 64 : i < 38 ? 7 : i < 39 ? 2 : 5;
+    ++i;
+  }
+  garden.put("all.las", garden.las.build());
+  require_success(garden.run("convert all.las -o mixed.h5"));
+  check_says(
+      garden.search("-o a.h5", "mixed.h5").out,
+      "20 of 40 points are classified as high noise (18), 5 as class 64, 3 as low noise (7), "
+      "2 as others");
+}
+
 TEST_CASE("a verdict says what was ignored") {
   const Garden garden;
   check_says(garden.search("-o a.h5").out, "conflict: 40 points are closer");

@@ -179,10 +179,12 @@ std::string worsening_text(const ComparedConflicts& found, const Conflict& a, co
 namespace {
 
 std::string line_of(const Conflict& c) {
-  return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:>7}  {:.3f} {:.3f} {:.3f}\n", c.id,
+  const std::string classes = class_words(c);
+  return fmt::format("  {:>5}  {:>19}  {:>11} {:<6}  {:>7}  {:.3f} {:.3f} {:.3f}{}{}\n", c.id,
                      fmt::format("{:.2f} - {:.2f}", c.chainage_from, c.chainage_to),
                      format_count(c.points), c.points == 1 ? "point" : "points", name_of(c.side),
-                     c.centroid.x, c.centroid.y, c.centroid.z);
+                     c.centroid.x, c.centroid.y, c.centroid.z, classes.empty() ? "" : "; ",
+                     classes);
 }
 
 /// The chainages of a part of a conflict of one side.
@@ -412,6 +414,8 @@ ordered_json json_of_conflict(const Conflict& c) {
   if (c.least_distance) out["least_distance"] = *c.least_distance;
   if (c.own_shift_left) out["own_shift_left"] = *c.own_shift_left;
   if (c.own_shift_right) out["own_shift_right"] = *c.own_shift_right;
+  if (c.main_class) out["main_class"] = *c.main_class;
+  if (c.main_class_points) out["main_class_points"] = *c.main_class_points;
   return out;
 }
 

@@ -28,6 +28,7 @@
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/error_budget.hpp"
+#include "core/query/point_classes.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/check_conflicts.hpp"
@@ -78,6 +79,14 @@ std::string missing_cell(const Conflict& c, double metre) {
   constexpr std::string_view kAtLeast = "at least ";
   if (words.starts_with(kAtLeast)) return ">= " + words.substr(kAtLeast.size());
   return words.empty() ? "-" : words;
+}
+
+/// The class of most points, with their number where it is not all: "high noise (18)", "40 ground
+/// (2)".
+std::string class_cell(const Conflict& c) {
+  const std::string words = class_words(static_cast<std::uint8_t>(c.main_class.value_or(0)));
+  if (words.empty()) return "-";
+  return c.main_class_points == c.points ? words : format_count(*c.main_class_points) + " " + words;
 }
 
 /// A column of the table on the terminal: its title and its cells.
@@ -146,6 +155,9 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
     add("class",
         [](const Conflict& c) { return c.certain.value_or(false) ? "certain" : "possible"; });
   }
+  if (std::ranges::any_of(rows, [](const Conflict* c) { return !class_words(*c).empty(); })) {
+    add("classified", class_cell);
+  }
   std::size_t width = 0;
   for (const TextColumn& column : columns) width += column.width() + 2;
   add("centroid", [](const Conflict& c) {
@@ -181,8 +193,9 @@ std::string totals_text(const ConflictFile& file) {
   const Conflicts& c = file.conflicts;
   const std::uint64_t points = c.colliding_points + c.near_points;
   if (points == 0) return "no conflicts, because no point collides\n";
-  const std::string path =
-      " along " + format_brief(c.path_length) + " " + symbol_of(file.unit()) + " of path\n";
+  const std::string classes = classified_words(c.classes, points);
+  const std::string path = " along " + format_brief(c.path_length) + " " + symbol_of(file.unit()) +
+                           " of path" + (classes.empty() ? "" : "; " + classes) + "\n";
   if (c.listed.empty()) {
     const bool near = c.near_points > 0;
     const char* does = near ? " may collide" : c.small_points == 1 ? " collides" : " collide";
@@ -431,7 +444,7 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
   const Answer answer = counted_answer(result.reader());
   ConflictFile file{conflicts, options.find, result.reader().header(), answer, poses,
                     {},        options.date};
-  file.warnings = conflict_warnings(conflicts, symbol_of(file.unit()));
+  file.warnings = conflict_warnings(conflicts, file.unit());
   std::optional<Ledger> ledger;
   if (has_ledger) {
     ledger = apply_ledger_of(

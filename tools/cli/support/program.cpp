@@ -109,9 +109,13 @@ std::string advice_on(const Message& message) {
         has_number(message, "model_height") || has_number(message, "model_longest");
     return of_model ? ". clearway run --forward and --up turn the model when it is read" : "";
   }
-  if (message.code == "one-long-conflict") {
+  if (message.code == "one-long-conflict" && has_number(message, "ground")) {
     return ". clearway run --floor, or a higher one, judges only what lies at that height of the "
            "vehicle or above";
+  }
+  if (message.code == "one-long-conflict" && has_number(message, "inside")) {
+    return ". If it is that vehicle, leave it out where the scans are exported, or give its points "
+           "a class, which clearway run --ignore-class leaves out";
   }
   return "";
 }

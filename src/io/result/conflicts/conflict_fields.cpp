@@ -137,6 +137,12 @@ Json json_of(const std::vector<ConflictField>& fields) {
   return out;
 }
 
+Json json_of(const ClassCounts& classes) {
+  Json out = Json::object();
+  for (const auto& [value, points] : classes) out[std::to_string(value)] = points;
+  return out;
+}
+
 std::string csv_value(const ConflictField& field) {
   const FieldValue& value = field.value;
   if (std::holds_alternative<std::monostate>(value)) return "";
@@ -188,6 +194,7 @@ Json summary_of(const ConflictFile& file) {
   out["crs_wkt"] = header.crs_wkt;
   out["path_length"] = conflicts.path_length;
   out["colliding_points"] = conflicts.colliding_points;
+  if (!conflicts.classes.empty()) out["classes"] = json_of(conflicts.classes);
   out["conflict_count"] = conflicts.listed.size();
   const Conflict* const worst = worst_of(conflicts);
   out["worst"] = worst == nullptr ? Json() : Json(worst->id);
@@ -197,6 +204,9 @@ Json summary_of(const ConflictFile& file) {
   out["small"] = small_json(conflicts.small);
   out["longest_group"] = conflicts.longest_group;
   out["longest_group_points"] = conflicts.longest_group_points;
+  out["longest_group_height_from"] = or_null(conflicts.longest_group_height_from);
+  out["longest_group_height_to"] = or_null(conflicts.longest_group_height_to);
+  out["longest_group_is"] = name_of(conflicts.longest_group_is);
   if (file.ledger != nullptr) out["ledger"] = ledger_json(*file.ledger);
   out["warnings"] = file.all_warnings();
   return out;

@@ -11,6 +11,7 @@
 
 #include "clearway/conflicts.hpp"
 #include "core/describe/finding.hpp"
+#include "core/query/point_classes.hpp"
 #include "io/files/json.hpp"
 #include "io/result/conflicts/conflict_file.hpp"
 #include "io/result/result.hpp"
@@ -109,6 +110,9 @@ Json json_of(const FieldValue& value);
 Json json_of(const std::vector<ConflictField>& fields);
 /// A field's value as a cell of a CSV file, empty where it is absent.
 std::string csv_value(const ConflictField& field);
+
+/// Numbers of points by class as a JSON object.
+Json json_of(const ClassCounts& classes);
 
 /// Adds the hashes of what was searched to an object.
 void add_hashes(Json& json, const ResultHeader& header);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/query/point_classes.hpp"
 #include "core/util/format.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
 #include "io/scans/length_unit.hpp"
@@ -156,6 +157,13 @@ const char* side_words(Side side) {
   return "";
 }
 
+std::string class_words(const Conflict& conflict) {
+  if (!conflict.main_class) return "";
+  return classified_words(
+      {{static_cast<std::uint8_t>(*conflict.main_class), *conflict.main_class_points}},
+      conflict.points);
+}
+
 std::string remedy_words(const Conflict& conflict, const RemedyWords& how) {
   if (conflict.colliding == 0) return "";
   const bool knows_trims = how.conflicts.knows_trims;
@@ -191,6 +199,9 @@ std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
   } else if (!missing.empty()) {
     text += missing == "touches" ? ": it touches" : ": " + missing + " are missing";
   }
+  // The class of a single conflict is that of the verdict, beside which these words stand.
+  const std::string classes = how.conflicts.listed.size() > 1 ? class_words(conflict) : "";
+  if (!classes.empty()) text += "; " + classes;
   const std::string remedy = remedy_words(conflict, how);
   return text + "." + (remedy.empty() ? "" : " " + remedy);
 }

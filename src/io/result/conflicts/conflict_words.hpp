@@ -42,6 +42,10 @@ struct RemedyWords {
 /// How a conflict of a file is put in words.
 RemedyWords words_about(const Conflict& conflict, const ConflictFile& file);
 
+/// What most points of a conflict are classified as: "60 of 60 points are classified as high noise
+/// (18)". Empty where the class says nothing.
+std::string class_words(const Conflict& conflict);
+
 /// What frees a vehicle from a conflict, in sentences: "To pass it: a trim of 0.15 m on the left is
 /// enough." Names only trims and shifts that a search has confirmed; of an own shift it says that
 /// this is what the conflict's own points need. Says so where nothing of what was tried frees the

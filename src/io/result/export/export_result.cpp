@@ -120,6 +120,7 @@ template <typename Value>
 constexpr PointField::Type field_type_of() {
   return std::is_same_v<Value, double>          ? PointField::Type::kDouble
          : std::is_same_v<Value, std::uint64_t> ? PointField::Type::kUint64
+         : std::is_same_v<Value, std::uint8_t>  ? PointField::Type::kClass
                                                 : PointField::Type::kUint32;
 }
 
@@ -221,6 +222,7 @@ template <typename Number>
 void write_cell(TextBuffer& out, Number value) {
   out << value;
 }
+void write_cell(TextBuffer& out, std::uint8_t value) { out << std::uint32_t{value}; }
 /// What a row does not have, such as the depth of a point where none is free, is an empty cell.
 void write_cell(TextBuffer& out, double value) {
   if (!std::isnan(value)) out << value;
@@ -384,12 +386,14 @@ class ProfileTable {
         labels_(labels),
         chainage_start_(chainage_start),
         has_bodies_(!result.header().bodies.empty()),
+        has_classes_(result.header().has_classes()),
         unsearched_(result.findings().without_bodies) {
     out_ << "pose";
     for_each_label([&](const auto& label) {
       if (!label.of(labels).empty()) out_ << "," << label.key;
     });
-    out_ << ",chainage,distance,source,x,y,z" << (has_bodies_ ? ",searched\n" : "\n");
+    out_ << ",chainage,distance,source,x,y,z" << (has_classes_ ? ",class" : "")
+         << (has_bodies_ ? ",searched\n" : "\n");
   }
 
   void write(const ProfileRows& rows) {
@@ -400,12 +404,13 @@ class ProfileTable {
       });
       out_ << "," << chainage_start_ + rows.chainage[i] << ",";
       if (rows.source[i] == Profile::kNoPoint) {
-        out_ << ",,,,";
+        out_ << ",,,," << (has_classes_ ? "," : "");
         end_row();
         continue;
       }
       out_ << rows.distance[i] << "," << rows.source[i] << ",";
       position_.write(out_, rows.xyz[i], ",");
+      if (has_classes_) out_ << "," << std::uint32_t{rows.point_class[i]};
       end_row();
     }
   }
@@ -422,7 +427,7 @@ class ProfileTable {
   PositionText position_;
   const PoseLabels& labels_;
   double chainage_start_;
-  bool has_bodies_;
+  bool has_bodies_, has_classes_;
   const std::vector<std::array<std::uint32_t, 2>>& unsearched_;
   /// Index of the first run of unsearched_ that does not end before the pose.
   std::size_t next_ = 0;

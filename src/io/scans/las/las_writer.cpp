@@ -32,6 +32,15 @@ struct Layout {
   std::uint32_t points_offset;
 };
 
+bool is_class(const PointField& field) { return field.type == PointField::Type::kClass; }
+
+/// The fields that become extra bytes.
+std::vector<PointField> extra_fields(const LasHeader& header) {
+  std::vector<PointField> extra = header.fields;
+  std::erase_if(extra, is_class);
+  return extra;
+}
+
 Layout layout_of(const LasHeader& header) {
   Layout out{};
   out.version_14 = header.points > std::numeric_limits<std::uint32_t>::max() ||
@@ -40,9 +49,10 @@ Layout layout_of(const LasHeader& header) {
   out.wkt_bytes = header.crs_wkt.empty() ? 0 : header.crs_wkt.size() + 1;
   out.wkt_evlr = out.wkt_bytes > std::numeric_limits<std::uint16_t>::max();
   out.wkt_vlr = out.wkt_bytes > 0 && !out.wkt_evlr;
-  out.extra_fields = static_cast<std::uint16_t>(header.fields.size());
+  const std::vector<PointField> extra = extra_fields(header);
+  out.extra_fields = static_cast<std::uint16_t>(extra.size());
   out.record_bytes = out.version_14 ? kRecordBytes6 : kRecordBytes0;
-  for (const PointField& field : header.fields) {
+  for (const PointField& field : extra) {
     out.record_bytes = static_cast<std::uint16_t>(out.record_bytes + field.bytes());
   }
   out.vlrs = (out.wkt_vlr ? 1 : 0) + (out.extra_fields > 0 ? 1 : 0);
@@ -115,6 +125,8 @@ LasExtraType extra_type_of(PointField::Type type) {
       return LasExtraType::kDouble;
     case PointField::Type::kUint64:
       return LasExtraType::kUint64;
+    case PointField::Type::kClass:
+      break;
   }
   return LasExtraType::kUndocumented;
 }
@@ -123,7 +135,7 @@ void put_extra_bytes_vlr(ByteWriter& out, const LasHeader& header, const Layout&
   put_record_header(out, "LASF_Spec", 4,
                     static_cast<std::uint16_t>(layout.extra_fields * kLasExtraBytes),
                     "extra bytes");
-  for (const PointField& field : header.fields) {
+  for (const PointField& field : extra_fields(header)) {
     out.put(las_extra_bytes(field.name, extra_type_of(field.type), field.description));
   }
 }
@@ -134,14 +146,17 @@ struct LasWriter::State {
   State(const File& file, const LasHeader& las_header)
       : out(file), header(las_header), layout(layout_of(las_header)) {}
 
-  void put_point(const std::array<std::int32_t, 3>& q) {
+  /// point_class: written by version 1.4 alone, which files with classes have.
+  void put_point(const std::array<std::int32_t, 3>& q, std::uint8_t point_class) {
     out.put(q);
     if (layout.version_14) {
       struct {
         std::uint16_t intensity = 0;
         std::uint8_t returns = 0x11;  // first return of one
-        std::uint8_t rest[15] = {};
-      } const tail;
+        std::uint8_t flags = 0;
+        std::uint8_t point_class = 0;
+        std::uint8_t rest[13] = {};
+      } const tail{.point_class = point_class};
       static_assert(sizeof tail == kRecordBytes6 - 12);
       out.put(tail);
     } else {
@@ -182,9 +197,18 @@ LasWriter::~LasWriter() = default;
 void LasWriter::write(std::span<const std::array<std::int32_t, 3>> quanta,
                       std::span<const FieldValues> values) {
   check_fields(state_->header.fields, values, quanta.size());
+  std::span<const std::uint8_t> classes;
+  std::vector<FieldValues> extra;
+  for (const FieldValues& field : values) {
+    if (const auto* of_points = std::get_if<std::span<const std::uint8_t>>(&field)) {
+      classes = *of_points;
+    } else {
+      extra.push_back(field);
+    }
+  }
   for (std::size_t i = 0; i < quanta.size(); ++i) {
-    state_->put_point(quanta[i]);
-    for (const FieldValues& field : values) {
+    state_->put_point(quanta[i], classes.empty() ? std::uint8_t{0} : classes[i]);
+    for (const FieldValues& field : extra) {
       std::visit([&](const auto& of_points) { state_->out.put(of_points[i]); }, field);
     }
   }

@@ -19,7 +19,7 @@ struct LasHeader {
   std::uint64_t points = 0;
   QuantumBox bounds{};               ///< box of all points; ignored for 0 points
   std::string crs_wkt{};             ///< CRS; empty for none
-  std::vector<PointField> fields{};  ///< become extra bytes
+  std::vector<PointField> fields{};  ///< become extra bytes, except a class
 };
 
 /// Writes LAS front to back, so that the output may be a pipe: version 1.2 with point format 0, or

@@ -14,7 +14,9 @@ std::string header_text(const PlyOutput& header) {
   text += "element vertex " + std::to_string(header.points) + "\n";
   for (const char* axis : {"x", "y", "z"}) text += type + axis + "\n";
   for (const PointField& field : header.fields) {
-    text += field.type == PointField::Type::kUint32 ? "property uint " : "property double ";
+    text += field.type == PointField::Type::kUint32  ? "property uint "
+            : field.type == PointField::Type::kClass ? "property uchar "
+                                                     : "property double ";
     text += field.name + "\n";
   }
   return text + "end_header\n";

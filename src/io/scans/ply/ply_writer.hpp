@@ -18,7 +18,7 @@ enum class PlyCoordinates { kFloat32, kFloat64 };
 struct PlyOutput {
   std::uint64_t points = 0;
   PlyCoordinates coordinates = PlyCoordinates::kFloat64;
-  std::vector<PointField> fields{};     ///< become properties of type uint, or else double
+  std::vector<PointField> fields{};     ///< become properties of type uint, uchar or double
   std::vector<std::string> comments{};  ///< comments of one line each
 };
 

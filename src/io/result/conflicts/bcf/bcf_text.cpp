@@ -135,6 +135,8 @@ std::string description_of(const ConflictFile& file, const Conflict& c) {
                     " closer than " + length_text(file, format_length(file.header.radius)) +
                     " to the moving model" +
                     (near > 0 ? ", and " + counted(near, "point") + " may be by the errors." : ".");
+  if (const std::string classes = class_words(c); !classes.empty())
+    out += " Of these, " + classes + ".";
   if (c.least_distance && *c.least_distance < 0) {
     out += " The deepest point is " + length_text(file, format_brief(-*c.least_distance)) +
            " inside the model, at pose " + std::to_string(*c.nearest_pose) + "; " +
