@@ -89,7 +89,7 @@ TEST_CASE("conflicts are listed in JSON and CSV, and no point is lost") {
         "first_pose,last_pose,chainage_from,chainage_to,least_distance,nearest_pose,nearest_source,"
         "encroachment,encroachment_is,side,first_touch,trim_left,trim_right,trim_above,trim_below,"
         "lateral,height,group,depth,points_inside,depth_source,obstacle_chainage,own_shift_left,"
-        "own_shift_right,small_groups,small_points");
+        "own_shift_right,main_class,main_class_points,small_groups,small_points");
   CHECK_THAT(rows[1], StartsWith("1," + all["conflicts"][0]["rank"].dump() + "," +
                                  all["conflicts"][0]["points"].dump() + "," +
                                  all["conflicts"][0]["source"].dump() + ","));
