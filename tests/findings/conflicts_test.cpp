@@ -79,7 +79,7 @@ TEST_CASE("a conflict along the whole path is told by its height") {
   const Case cases[] = {
       {"ground", -1400, 1400, -1200, 0, GroupPlace::kGround, ", -0.2 m above"},
       {"rails", -700, 700, -950, 0, GroupPlace::kGround, ", 0.05 m above"},
-      {"ground and what stands on it", -1400, 1400, -1200, 2000, GroupPlace::kGround, "to 1.8 m"},
+      {"ground and what stands on it", -1400, 1400, -1200, 1500, GroupPlace::kGround, "to 1.3 m"},
       {"roof of the scanner's vehicle", -500, 500, 900, 0, GroupPlace::kInside, ", 1.9 m above"},
       {"bonnet", -600, 300, -200, 40, GroupPlace::kInside, "0.8 to 0.84 m above"},
       {"mast", -50, 50, 0, 500, GroupPlace::kInside, "1 to 1.5 m above"},
