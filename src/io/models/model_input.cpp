@@ -66,7 +66,20 @@ void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
   }
 }
 
-void read_points(ModelInput& input) {
+/// Throws InputError where the file says something of its unit or of the place of its points that
+/// is not read. has_unit: whether the unit is given.
+void refuse_unread(const ModelInput& input, const CloudInfo& info, bool has_unit) {
+  if (!info.unplaced.empty()) {
+    refuse(input.path.string(), info.unplaced + std::string(kExpectedPlaced));
+  }
+  const std::string unread =
+      info.crs_unread.empty() ? info.unit_unread : info.crs_unread + " is not read";
+  if (has_unit || info.unit != LengthUnit::kUnknown || unread.empty()) return;
+  refuse(input.path.string(),
+         unread + ". So its unit is not known, expected one that is read. --model-unit names it");
+}
+
+void read_points(ModelInput& input, bool has_unit) {
   const auto reader = open_point_file(input.path);
   PointBatch batch;
   std::uint64_t withheld = 0;
@@ -83,6 +96,7 @@ void read_points(ModelInput& input) {
   }
   input.sampled_spacing = reader->info().model_spacing;
   const CloudInfo& info = reader->info();
+  refuse_unread(input, info, has_unit);
   const std::string trouble = heights_trouble(info.height_unit, info.unit);
   if (!trouble.empty()) {
     refuse(input.path.string(), trouble + "; expected one unit for all of them");
@@ -336,7 +350,7 @@ ModelInput read_model_input(const std::filesystem::path& path, const ModelOption
   if (box) make_box(input);
   if (box && !with_faces) input.between_vertices = std::exchange(input.mesh.triangles, {});
   const bool mesh = box || read_as_mesh(input, with_faces);
-  if (!mesh) read_points(input);
+  if (!mesh) read_points(input, options.unit.is_known());
   if (input.mesh.vertices.empty()) {
     refuse(path.string(), "the model has no points; expected one at least");
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 
 namespace clearway {
@@ -15,14 +16,16 @@ bool is_filled_in(const Box& declared) {
   return !(declared.lo == declared.hi);
 }
 
-bool goes_far_beyond(const Box& declared, const std::optional<Box>& found) {
-  if (!found || !is_filled_in(declared)) return false;
+std::optional<Box> reach_of(const std::optional<Box>& declared) {
+  if (!declared || !is_filled_in(*declared)) return std::nullopt;
+  Box reach = *declared;
   double size = 0;
-  for (int k = 0; k < 3; ++k) size = std::max(size, declared.hi[k] - declared.lo[k]);
+  for (int k = 0; k < 3; ++k) size = std::max(size, reach.hi[k] - reach.lo[k]);
   for (int k = 0; k < 3; ++k) {
-    if (found->lo[k] < declared.lo[k] - size || found->hi[k] > declared.hi[k] + size) return true;
+    reach.lo[k] -= size;
+    reach.hi[k] += size;
   }
-  return false;
+  return reach;
 }
 
 std::string declared_box_text(const Box& box) {
@@ -31,6 +34,42 @@ std::string declared_box_text(const Box& box) {
            format_digits(p.z, 9) + ")";
   };
   return corner(box.lo) + " to " + corner(box.hi);
+}
+
+void BoundsWarnings::add(const std::string& name, const Box& declared, const Found& found) {
+  if (found.beyond == 0) return;
+  const bool is_whole = found.beyond == found.points;
+  OfKind& kind = is_whole ? wholly_ : partly_;
+  if (kind.count++ > 0) return;
+  kind.first = name + ": " +
+               (is_whole ? "all " + counted(found.points, "point")
+                         : format_count(found.beyond) + " of " + counted(found.points, "point")) +
+               " lie far beyond the declared bounds, which are " + declared_box_text(declared) +
+               ". The points reach from " + declared_box_text(found.box);
+}
+
+std::vector<Message> BoundsWarnings::messages() const {
+  std::vector<Message> out;
+  const auto more = [](const OfKind& kind) {
+    return kind.count > 1 ? ". " + format_count(kind.count - 1) + " more are alike" : "";
+  };
+  const auto number = [](const OfKind& kind) {
+    return MessageNumbers{{"count", static_cast<double>(kind.count)}};
+  };
+  if (partly_.count > 0) {
+    out.push_back(
+        warning("declared-bounds",
+                partly_.first + more(partly_) +
+                    ". Some records may be damaged or zero: copy or export the scan again",
+                number(partly_)));
+  }
+  if (wholly_.count > 0) {
+    out.push_back(warning("outside-bounds",
+                          wholly_.first + more(wholly_) +
+                              ". The bounds may be those of another scan or in another unit",
+                          number(wholly_)));
+  }
+  return out;
 }
 
 }  // namespace clearway

@@ -35,7 +35,8 @@ constexpr std::string_view kSurveyFeet[] = {
     "usft",           "us_ft",          "us ft",          "ftus",
     "ft(us)",         "ft-us",          "ft_us",          "sft",
     "us survey foot", "us survey feet", "us-survey-foot", "us-survey-feet",
-    "us_survey_foot", "us_survey_feet", "survey foot",    "survey feet"};
+    "us_survey_foot", "us_survey_feet", "survey foot",    "survey feet",
+    "foot_us",        "foot us",        "feet us",        "us feet"};
 constexpr std::string_view kYards[] = {"yard", "yards"};
 
 constexpr std::array<NamedUnit, 10> kNamed{
@@ -90,6 +91,26 @@ const NamedUnit* find_unit(std::string_view name) {
     return known.symbol == name || std::ranges::find(known.names, name) != known.names.end();
   });
   return unit == kNamed.end() ? nullptr : unit;
+}
+
+const NamedUnit* find_unit_in_words(std::string_view text) {
+  constexpr std::size_t kMostWords = 3;  // as in "us survey foot"
+  std::vector<std::string> words(1);
+  for (char c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    const bool is_letter = (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+    if (is_letter) words.back() += c;
+    if (!is_letter && !words.back().empty()) words.emplace_back();
+  }
+  for (std::size_t count = kMostWords; count > 0; --count) {
+    for (std::size_t first = 0; first + count <= words.size(); ++first) {
+      std::string name = words[first];
+      for (std::size_t i = 1; i < count; ++i) name += " " + words[first + i];
+      const NamedUnit* const unit = name.size() > 1 ? find_unit(name) : nullptr;
+      if (unit != nullptr && unit->environment != LengthUnit::kUnknown) return unit;
+    }
+  }
+  return nullptr;
 }
 
 std::vector<std::string> file_unit_names() {

@@ -32,6 +32,10 @@ struct NamedUnit {
 /// Finds a unit by its symbol or another of its names, all in lower case; null for any other text.
 const NamedUnit* find_unit(std::string_view name);
 
+/// Finds a unit of environments by a name that stands among other words, as in "NAD83 / Texas South
+/// Central (ftUS)"; null where there is none. Single letters do not count.
+const NamedUnit* find_unit_in_words(std::string_view text);
+
 /// Symbols of the units in which models and trajectories are read.
 std::vector<std::string> file_unit_names();
 /// Symbols of the units in which models and trajectories are read, as in "mm, cm, m, in, ft, ift or

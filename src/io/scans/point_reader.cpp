@@ -11,6 +11,7 @@
 #include "io/scans/ply/ply_reader.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/ptx/ptx_reader.hpp"
+#include "io/scans/text_copy.hpp"
 #include "io/scans/threedtk/threedtk_reader.hpp"
 
 namespace clearway {
@@ -31,16 +32,9 @@ PointFormat format_of(const File& file, const std::filesystem::path& path) {
   return *format;
 }
 
-}  // namespace
-
-std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
-                                             const PointReadOptions& options) {
-  File file = File::open_for_reading(path);
-  if (!file.is_regular()) {
-    return open_las_stream(std::move(file), std::filesystem::temp_directory_path(), options);
-  }
-  const PointFormat format = format_of(file, path);
-  refuse_unless_read(format, file.name());
+std::unique_ptr<PointReader> open_as(PointFormat format, File file,
+                                     const std::filesystem::path& path,
+                                     const PointReadOptions& options) {
   if (format == PointFormat::kE57) return read_e57(std::move(file));
   InputBuffer input(std::move(file), InputBuffer::Access::kSeek);
   switch (format) {
@@ -54,6 +48,26 @@ std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
       return read_threedtk(std::move(input), path);
     default:
       return read_scan_text(std::move(input), format == PointFormat::kPtx, options);
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<PointReader> open_point_file(const std::filesystem::path& path,
+                                             const PointReadOptions& options) {
+  File file = File::open_for_reading(path);
+  if (!file.is_regular()) {
+    return open_las_stream(std::move(file), std::filesystem::temp_directory_path(), options);
+  }
+  const PointFormat format = format_of(file, path);
+  refuse_unless_read(format, file.name());
+  try {
+    return open_as(format, std::move(file), path, options);
+  } catch (const InputError&) {
+    if (format == PointFormat::kLas || format == PointFormat::kE57) {
+      refuse_if_copied_as_text(File::open_for_reading(path));
+    }
+    throw;
   }
 }
 

@@ -183,10 +183,14 @@ bool is_of_heights(std::string_view keyword) {
          keyword == "VERTICALCRS";
 }
 
+bool is_compound(std::string_view keyword) {
+  return keyword == "COMPD_CS" || keyword == "COMPOUNDCRS";
+}
+
 /// Whether a node has whole systems as its parts.
 bool is_of_systems(std::string_view keyword) {
-  return keyword == "COMPD_CS" || keyword == "COMPOUNDCRS" || keyword == "SOURCECRS" ||
-         keyword == "TARGETCRS" || keyword == "INTERPOLATIONCRS";
+  return is_compound(keyword) || keyword == "SOURCECRS" || keyword == "TARGETCRS" ||
+         keyword == "INTERPOLATIONCRS";
 }
 
 WktSystems systems_of(std::string_view text) {
@@ -194,6 +198,8 @@ WktSystems systems_of(std::string_view text) {
   struct Open {
     std::size_t begin;
     std::string keyword;  ///< in upper case
+    std::size_t parts = 0;
+    std::string_view last_part = {};  ///< the last whole system within
   };
   WktSystems out;
   std::vector<Open> open;
@@ -201,8 +207,8 @@ WktSystems systems_of(std::string_view text) {
   std::size_t begin = kNone;             // where the current system begins
   std::size_t word = 0, word_end = 0;
   bool quoted = false;
-  const auto end_system = [&](std::size_t end) {
-    out.texts.push_back(trimmed(text.substr(begin, end - begin)));
+  const auto end_system = [&](std::string_view system) {
+    out.texts.push_back(trimmed(system));
     out.texts.insert(out.texts.end(), within.begin(), within.end());
     within.clear();
     begin = kNone;
@@ -221,18 +227,25 @@ WktSystems systems_of(std::string_view text) {
       out.names_unit = out.names_unit || open.back().keyword.ends_with("UNIT");
       word = word_end = at + 1;  // a bracket after this one has no keyword
     } else if (closes && open.empty()) {
-      if (begin != kNone) end_system(at);
+      if (begin != kNone) end_system(text.substr(begin, at - begin));
     } else if (closes) {
       const Open closed = std::move(open.back());
       open.pop_back();
+      const bool is_part = closed.keyword.ends_with("CS") || closed.keyword.ends_with("CRS");
+      if (is_part && !open.empty()) {
+        ++open.back().parts;
+        open.back().last_part = text.substr(closed.begin, at + 1 - closed.begin);
+      }
       if (open.empty()) {
-        end_system(at + 1);
+        // A compound may be closed before its second part, which then follows it.
+        const bool is_lone = is_compound(closed.keyword) && closed.parts == 1;
+        end_system(is_lone ? closed.last_part : text.substr(begin, at + 1 - begin));
       } else if (is_of_heights(closed.keyword) && !is_of_systems(open.back().keyword)) {
         within.push_back(text.substr(closed.begin, at + 1 - closed.begin));
       }
     }
   }
-  if (begin != kNone) end_system(text.size());
+  if (begin != kNone) end_system(text.substr(begin));
   return out;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "io/scans/length_unit.hpp"
 
@@ -25,8 +26,19 @@ struct StatedCrs {
   /// What the file says of its system that is not read, although its units are known; empty where
   /// all is read.
   std::string crs_doubt = {};
+  /// What the file says of its unit that is not read, while nothing else names a unit; otherwise
+  /// empty.
+  std::string unit_unread = {};
+  /// A record or comment that places the points and is not applied, as in "its record LAStools 2001
+  /// holds the matrix of a scanner"; empty where there is none.
+  std::string unplaced = {};
 
   friend bool operator==(const StatedCrs&, const StatedCrs&) = default;
 };
+
+/// What is expected of a file with `unplaced`, as the end of a sentence.
+inline constexpr std::string_view kExpectedPlaced =
+    ", expected points that are placed. Give the file from which it was made, such as PTX, or make "
+    "it again with the matrix applied";
 
 }  // namespace clearway

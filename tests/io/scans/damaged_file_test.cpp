@@ -10,6 +10,7 @@
 #include "support/bytes/pcd_bytes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -109,4 +110,95 @@ TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
       CHECK_NOTHROW(read_anything(scratch.write(name, bytes)));
     }
   }
+}
+
+namespace {
+
+std::string exchanged(std::string bytes, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = bytes.find(what, at)) != bytes.npos; at += by.size()) {
+    bytes.replace(at, what.size(), by);
+  }
+  return bytes;
+}
+
+/// Binary files of points whose coordinates hold every byte.
+std::vector<std::pair<std::string, std::string>> binary_samples() {
+  std::mt19937 random(1);
+  LasBytes las;
+  std::vector<double> x, y, z;
+  std::string floats;
+  TriangleMesh mesh;
+  for (std::size_t i = 0; i < 2000; ++i) {
+    const auto number = [&] { return static_cast<std::int32_t>(random() % 4'000'000) - 2'000'000; };
+    const std::array<std::int32_t, 3> q{number(), number(), number()};
+    las.points.push_back(q);
+    mesh.vertices.push_back({q[0] * 0.001, q[1] * 0.001, q[2] * 0.001});
+    const Vec3& p = mesh.vertices.back();
+    x.push_back(p.x), y.push_back(p.y), z.push_back(p.z);
+    floats += raw(static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z));
+  }
+  mesh.triangles = {{0, 1, 2}};
+  E57Bytes e57;
+  e57.scans = {e57_scan(x, y, z)};
+  PcdHeaderText pcd;
+  pcd.width = pcd.points = "2000";
+  const std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2000\nproperty float x\n"
+      "property float y\nproperty float z\nend_header\n";
+  return {{"a.las", las.build()},
+          {"a.laz", laz_bytes(1, 2000).build()},
+          {"a.e57", e57.build()},
+          {"a.ply", ply + floats},
+          {"b.ply", ply_mesh(mesh, "binary_little_endian")},
+          {"a.pcd", pcd.build("binary") + floats},
+          {"b.pcd", pcd.build("binary_compressed") + compressed(floats)}};
+}
+
+}  // namespace
+
+TEST_CASE("binary files that were copied as text are refused, and the reason is given") {
+  ScratchFolder scratch;
+  for (const auto& [name, bytes] : binary_samples()) {
+    INFO(name);
+    REQUIRE(refusal_of(scratch.write(name, bytes)).empty());
+    const std::string more = exchanged(bytes, "\n", "\r\n");
+    REQUIRE(more.size() > bytes.size());
+    check_says(refusal_of(scratch.write(name, more)), name + ": was copied as text");
+    std::string low = bytes;
+    for (char& c : low) c = static_cast<char>(c & 0x7F);
+    const bool is_e57 = name.ends_with("e57");  // whose checksums say so
+    check_says(refusal_of(scratch.write(name, low)), is_e57 ? "checksum" : "no byte above 127");
+    if (name.ends_with("ply")) {
+      CHECK_THROWS_AS(read_model_points(scratch.write(name, more)), InputError);
+      CHECK_THROWS_AS(read_model_points(scratch.write(name, low)), InputError);
+    }
+    const std::string fewer = exchanged(exchanged(bytes, "\r\n", "\n"), "\r", "");
+    CHECK_FALSE(refusal_of(scratch.write(name, fewer)).empty());
+    if (!name.starts_with("a.la")) continue;
+    for (const std::string& damaged : {more, low, fewer}) {
+      CHECK_FALSE(stream_refusal_of(scratch.write(name, damaged)).empty());
+    }
+  }
+}
+
+TEST_CASE("as many bytes as some records, put in by a copy as text, are never read as points") {
+  LasBytes las;
+  las.scale = {0.001, 0.001, 0.001};
+  las.points.assign(500, {1'000'000, 2'000'000, 3'000'000});
+  for (std::size_t i = 0; i < 40; ++i) las.points[12 * i] = {10, 0, 0};  // a line feed in each
+  ScratchFolder scratch;
+  const auto path = scratch.write("a.las", exchanged(las.build(), "\n", "\r\n"));
+  CHECK(std::filesystem::file_size(path) == las.build().size() + 2 * las.record_bytes());
+  for (const std::string& refusal : {refusal_of(path), stream_refusal_of(path)}) {
+    check_says(refusal, "was copied as text");
+  }
+}
+
+TEST_CASE("line ends of a header and few bytes say nothing of a copy as text") {
+  ScratchFolder scratch;
+  const std::string ply =
+      "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 2\r\nproperty int x\r\n"
+      "property int y\r\nproperty int z\r\nend_header\r\n";
+  CHECK(read_all(scratch.write("a.ply", ply + raw(1, 2, 3, 4, 5, 6))).size() == 2);
+  CHECK(read_all(scratch.write("b.ply", ply + raw(1, 2, 3, 4, 10, 13))).size() == 2);
 }

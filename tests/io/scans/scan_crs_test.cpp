@@ -144,8 +144,9 @@ TEST_CASE("what PROJ does not read of a system is known, and does no harm") {
     INFO(text.substr(0, 300));
     CHECK_FALSE(scan_crs_of(text).unread.empty());
   }
-  for (const std::string& text : std::vector<std::string>{
-           "", plane + " \n", plane + "]]", plane + "," + plane, "  " + plane + ","}) {
+  for (const std::string& text :
+       std::vector<std::string>{"", plane + " \n", plane + "]]", plane + "," + plane,
+                                "  " + plane + ",", "COMPD_CS[\"c\"," + plane + "]"}) {
     INFO(text);
     CHECK(scan_crs_of(text).unread.empty());
   }

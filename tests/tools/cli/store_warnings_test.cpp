@@ -141,6 +141,9 @@ TEST_CASE("zeros and points beyond the header's bounds are told of small files t
   auto far = points;
   far.push_back({5'000, 40'000, 0});
   CHECK(codes(far) == std::vector<std::string>{"declared-bounds"});
+  auto all_far = points;
+  for (auto& point : all_far) point[1] += 40'000;
+  CHECK(codes(all_far) == std::vector<std::string>{"outside-bounds"});
   auto near = points;
   near.push_back({5'000, 10'400, 0});
   CHECK(codes(near).empty());

@@ -15,6 +15,7 @@
 #include "io/models/mesh/mesh_builder.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/scans/ply/ply_header.hpp"
+#include "io/scans/text_copy.hpp"
 
 namespace clearway {
 namespace {
@@ -79,7 +80,10 @@ class AsciiPlyNumbers final : public PlyNumbers {
 
 class BinaryPlyNumbers final : public PlyNumbers {
  public:
-  BinaryPlyNumbers(InputBuffer& input, bool swapped) : input_(input), swapped_(swapped) {}
+  BinaryPlyNumbers(InputBuffer& input, bool swapped) : input_(input), swapped_(swapped) {
+    refuse_if_copied_as_text(input_);
+    refuse_seven_bits(input_);
+  }
 
   void begin_row(const PlyElement& element, std::uint64_t row) override {
     element_ = &element;

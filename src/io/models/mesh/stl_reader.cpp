@@ -15,6 +15,7 @@
 #include "io/models/mesh/mesh_builder.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/scans/text/table_header.hpp"
+#include "io/scans/text_copy.hpp"
 
 namespace clearway {
 namespace {
@@ -193,6 +194,7 @@ MeshFile read_stl(InputBuffer input) {
   const std::uint64_t expected = kHeaderBytes + kTriangleBytes * start.triangles;
   if (size >= kHeaderBytes && size == expected) {
     input.skip(kHeaderBytes);
+    refuse_seven_bits(input);
     return read_binary_stl(input, start.triangles);
   }
   if (start.is_text) return AsciiStlParser(input).parse();
@@ -201,6 +203,7 @@ MeshFile read_stl(InputBuffer input) {
                              " bytes; expected a binary STL file with 84 or more, or text that "
                              "starts with `solid`");
   }
+  refuse_if_copied_as_text(input.file());
   const bool longer = size > expected;
   refuse_byte(input.name(), 80,
               "declares " + std::to_string(start.triangles) + " triangles, that is " +

@@ -25,8 +25,8 @@ namespace {
 /// Collects remarks on the scans of a file. Memory does not grow with their number.
 class E57Remarks {
  public:
-  /// Adds a scan that was read completely.
-  void add(const E57Scan& scan, const E57Findings& findings);
+  /// Adds a scan that was read completely. file: the name with which each text begins.
+  void add(const std::string& file, const E57Scan& scan, const E57Findings& findings);
   /// Adds a scan that has no coordinates and was not read.
   void add_without_coordinates() { ++scans_, ++without_coordinates_; }
 
@@ -36,8 +36,7 @@ class E57Remarks {
  private:
   std::uint64_t scans_ = 0, posed_ = 0, empty_ = 0, without_coordinates_ = 0;
   std::uint64_t records_ = 0, absent_ = 0;
-  std::uint64_t beyond_bounds_ = 0;
-  std::string first_beyond_bounds_;
+  BoundsWarnings bounds_;
   CutOffWarning cut_off_;
 };
 
@@ -49,7 +48,7 @@ std::string scans(std::uint64_t count) {
   return format_count(count) + (count == 1 ? " scan" : " scans");
 }
 
-void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
+void E57Remarks::add(const std::string& file, const E57Scan& scan, const E57Findings& findings) {
   ++scans_;
   records_ += scan.records;
   absent_ += findings.absent;
@@ -61,14 +60,9 @@ void E57Remarks::add(const E57Scan& scan, const E57Findings& findings) {
   }
   // By the standard, bounds are those of the points before the pose is applied; some writers give
   // those after it.
-  if (!scan.bounds || !goes_far_beyond(*scan.bounds, findings.own) ||
-      (findings.posed && !goes_far_beyond(*scan.bounds, findings.posed))) {
-    return;
-  }
-  if (beyond_bounds_++ == 0) {
-    first_beyond_bounds_ = scan.name() + " declares " + declared_box_text(*scan.bounds) +
-                           " and has " + declared_box_text(*findings.own);
-  }
+  if (!scan.bounds) return;
+  const bool by_pose = scan.pose && findings.posed.beyond < findings.own.beyond;
+  bounds_.add(file + ": " + scan.name(), *scan.bounds, by_pose ? findings.posed : findings.own);
 }
 
 std::vector<Message> E57Remarks::messages(const std::string& file) const {
@@ -96,13 +90,8 @@ std::vector<Message> E57Remarks::messages(const std::string& file) const {
                            " records have no valid point",
                        {{"absent", number(absent_)}, {"records", number(records_)}}));
   }
-  if (beyond_bounds_ > 0) {
-    all.push_back(warning("declared-bounds",
-                          file + ": " + scans(beyond_bounds_) +
-                              " with points far beyond the declared bounds (" +
-                              first_beyond_bounds_ + ", metres). Is the unit of length right?",
-                          {{"scans_beyond_bounds", number(beyond_bounds_)}}));
-  }
+  const std::vector<Message> bounds = bounds_.messages();
+  all.insert(all.end(), bounds.begin(), bounds.end());
   if (auto cut_off = cut_off_.message()) {
     cut_off->text.insert(0, file + ": ");
     all.push_back(std::move(*cut_off));
@@ -192,7 +181,7 @@ class E57Reader final : public PointReader {
         reader_ = std::make_unique<E57ScanReader>(pages_, scans_[scan_], extents_[scan_]);
       batch.turn = scans_[scan_].pose ? turn_of(*scans_[scan_].pose) : std::nullopt;
       if (reader_->read(batch)) return true;
-      remarks_.add(scans_[scan_], reader_->findings());
+      remarks_.add(pages_.name(), scans_[scan_], reader_->findings());
     }
     info_.remarks = remarks_.messages(pages_.name());
     if (info_.unit == LengthUnit::kFoot || info_.unit == LengthUnit::kUsSurveyFoot) {
@@ -226,7 +215,7 @@ class E57Reader final : public PointReader {
 
   void note_unread(const E57Scan& scan) {
     if (scan.records == 0) {
-      remarks_.add(scan, {});
+      remarks_.add(pages_.name(), scan, {});
     } else {
       remarks_.add_without_coordinates();
     }

@@ -303,22 +303,20 @@ namespace {
 
 constexpr double kNoPosition = std::numeric_limits<double>::quiet_NaN();
 
-/// Widens the box to hold the finite ones of the points.
-void widen(std::optional<Box>& box, std::span<const Vec3> points) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Box all =
-      box.value_or(Box{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}});
+/// Adds the finite ones of the points, some of which may be out of reach.
+void add_to(BoundsWarnings::Found& found, std::span<const Vec3> points, const Box& reach) {
   for (const Vec3& p : points) {
     if (!std::isfinite(p.x + p.y + p.z)) continue;
-    all.extend(p);
+    if (found.points++ == 0) found.box = {p, p};
+    found.box.extend(p);
+    if (!reach.contains(p)) ++found.beyond;
   }
-  if (all.lo.x <= all.hi.x) box = all;
 }
 
 }  // namespace
 
 E57ScanReader::E57ScanReader(E57Pages& pages, const E57Scan& scan, const E57Extent& extent)
-    : pages_(pages), scan_(scan), packets_(pages, scan, extent) {
+    : pages_(pages), scan_(scan), reach_(reach_of(scan.bounds)), packets_(pages, scan, extent) {
   // Without a state field, every Cartesian coordinate is valid, so the spherical ones are not
   // needed.
   const bool only_cartesian = scan.is_cartesian() && !scan.has(kE57CartesianState);
@@ -450,10 +448,10 @@ void E57ScanReader::place_points(std::span<Vec3> out, std::size_t first,
       ++findings_.absent;
     }
   }
-  if (scan_.bounds) widen(findings_.own, out);
+  if (reach_) add_to(findings_.own, out, *reach_);
   if (!scan_.pose) return;
   for (Vec3& point : out) point = transform(*scan_.pose, point);
-  if (scan_.bounds) widen(findings_.posed, out);
+  if (reach_) add_to(findings_.posed, out, *reach_);
 }
 
 void E57ScanReader::finish() {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "io/scans/cut_off.hpp"
+#include "io/scans/declared_box.hpp"
 #include "io/scans/e57/e57_document.hpp"
 #include "io/scans/e57/e57_file.hpp"
 #include "io/scans/point_reader.hpp"
@@ -109,9 +110,10 @@ class E57Cursor {
 /// Findings in a scan's records, complete once the scan has been read.
 struct E57Findings {
   std::uint64_t absent = 0;  ///< records without a valid point
-  std::optional<Box> own;    ///< box of the finite points, without the pose
-  std::optional<Box> posed;  ///< box of the finite points, with the pose
-  CutOff cut_off;            ///< points at the ends of fields of 32-bit integers
+  /// The finite points against the declared bounds, without the pose and with it. Empty where there
+  /// are no bounds, and `posed` where there is no pose.
+  BoundsWarnings::Found own, posed;
+  CutOff cut_off;  ///< points at the ends of fields of 32-bit integers
 };
 
 /// Reads the points of one scan and applies its pose.
@@ -145,6 +147,7 @@ class E57ScanReader {
 
   E57Pages& pages_;
   const E57Scan& scan_;
+  std::optional<Box> reach_;  ///< of the declared bounds
   E57Packets packets_;
   std::array<std::optional<E57Cursor>, kE57Places> cursors_;
   std::array<Column, kE57Places> columns_;

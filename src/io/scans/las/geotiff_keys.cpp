@@ -18,17 +18,18 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint16_t kModelType = 1024;
+constexpr std::uint16_t kDirectory = 34735, kNumbers = 34736, kTexts = 34737;  // records
+constexpr std::uint16_t kModelType = 1024, kCitation = 1026;
 constexpr std::uint16_t kProjectedModel = 1, kGeographicModel = 2, kGeocentricModel = 3;
 constexpr std::uint16_t kGeodeticSystem = 2048;
 constexpr std::uint16_t kGeodeticLinearUnit = 2052, kGeodeticLinearSize = 2053;
 constexpr std::uint16_t kAngularUnit = 2054;
 constexpr std::uint16_t kEllipsoid = 2056, kSemiMajor = 2057, kSemiMinor = 2058;
 constexpr std::uint16_t kInverseFlattening = 2059;
-constexpr std::uint16_t kProjectedSystem = 3072;
+constexpr std::uint16_t kProjectedSystem = 3072, kProjectedCitation = 3073;
 constexpr std::uint16_t kProjection = 3074, kProjectionMethod = 3075;
 constexpr std::uint16_t kProjectedLinearUnit = 3076, kProjectedLinearSize = 3077;
-constexpr std::uint16_t kVerticalSystem = 4096, kVerticalUnit = 4099;
+constexpr std::uint16_t kVerticalSystem = 4096, kVerticalCitation = 4097, kVerticalUnit = 4099;
 constexpr std::uint16_t kUserDefined = 32767;
 
 /// A method of projection with its GeoTIFF code, and the parameters of PROJ with the keys that give
@@ -98,6 +99,68 @@ double unit_of_code(PJ_CONTEXT* context, std::uint16_t code, std::string_view ca
   }
 }
 
+/// What a citation names, the free text of a key.
+struct Cited {
+  std::string system = {};  ///< a system that PROJ reads
+  CrsUnits units = {};      ///< of the system, or those that the text names without one
+  std::string unread = {};  ///< a unit that is not certain, as a part of a sentence
+
+  double plane() const { return metres_of(units.plane); }
+};
+
+std::string_view trimmed(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ') || text.ends_with('\0')) text.remove_suffix(1);
+  return text;
+}
+
+constexpr std::string_view kAndHeights = " + ";  // between the systems that a citation names
+
+/// The system of an entry of a citation, where PROJ reads it and it names the wanted unit. The
+/// name of a geographic system does not count, because a projected one may be cited by it.
+bool read_system(std::string_view text, bool of_heights, Cited& out) {
+  const ScanCrs system = scan_crs_of(std::string(text));
+  if (!system.unread.empty()) return false;
+  const LengthUnit plane = system.units.plane;
+  const bool is_text = text.find('[') != std::string_view::npos;
+  const bool is_wanted = of_heights ? system.units.heights > 0
+                                    : metres_of(plane) > 0 || !system.units.trouble.empty() ||
+                                          (plane == LengthUnit::kDegrees && is_text);
+  if (!is_wanted) return false;
+  out.system = text;
+  out.units = system.units;
+  return true;
+}
+
+/// Reads a citation: the name of a system, or entries such as "PCS Name = ..." between bars and
+/// line breaks. "ESRI PE String" holds well-known text. of_heights: whether it cites a system of
+/// heights, where it does not matter which foot is meant.
+Cited read_citation(std::string_view text, bool of_heights) {
+  Cited out;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = std::min(rest.find_first_of("|\n"), rest.size());
+    std::string_view entry = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    const std::size_t equals = entry.substr(0, entry.find_first_of("[(")).find('=');
+    if (equals != std::string_view::npos) entry.remove_prefix(equals + 1);
+    entry = trimmed(entry);
+    const std::string_view first = entry.substr(0, entry.find(kAndHeights));
+    if (entry.empty()) continue;
+    if (read_system(entry, of_heights, out) || read_system(first, of_heights, out)) return out;
+  }
+  const NamedUnit* const unit = find_unit_in_words(text.substr(0, text.find(kAndHeights)));
+  if (unit == nullptr) return out;
+  if (unit->any_foot && !of_heights) {
+    out.unread =
+        "its GeoTIFF citation " + excerpt(text) +
+        " is in feet and does not say which, expected the name of a system that PROJ knows";
+    return out;
+  }
+  out.units.plane = unit->environment;
+  out.units.heights = unit->metres();
+  return out;
+}
+
 /// Reads the keys of a file, with PROJ's database at hand.
 class Reading {
  public:
@@ -117,6 +180,13 @@ class Reading {
     if (!unread.empty()) return;
     unread = "its GeoTIFF key " + std::to_string(key) + " is " + std::to_string(code) +
              (code == kUserDefined ? " (user-defined)" : "") + ", expected " + expected;
+  }
+
+  /// What the citations of the plane name, the first that names something.
+  Cited cited_plane() const {
+    Cited out = read_citation(keys_.text(kProjectedCitation), false);
+    const bool names = !out.system.empty() || out.plane() > 0 || !out.unread.empty();
+    return names ? out : read_citation(keys_.text(kCitation), false);
   }
 
   /// The length that a key of a unit names, or the key of a user-defined unit's size; 0 where the
@@ -156,10 +226,11 @@ class Reading {
     } else if (model == kGeographicModel || (model == 0 && !says_projected && geodetic != 0)) {
       if (is_code(geodetic)) out_.crs = epsg(geodetic);
       out_.units.plane = LengthUnit::kDegrees;
-    } else if (model == kProjectedModel || model == 0) {
-      read_projected(projected);
     } else {
-      note_unread(kModelType, model, "1 for projected, 2 for geographic or 3 for geocentric");
+      read_projected(projected);
+      if (model > kGeocentricModel && out_.crs.empty()) {
+        note_unread(kModelType, model, "1 for projected, 2 for geographic or 3 for geocentric");
+      }
     }
   }
 
@@ -176,17 +247,47 @@ class Reading {
       }
     } else if (code == kUserDefined) {
       out_.crs = user_defined(unit);
-      if (out_.crs.empty() && out_.unread.empty()) {
-        out_.unread = "its GeoTIFF keys define a projection of their own that is not read";
-      }
+    }
+    if (out_.crs.empty() && (code != 0 || !(unit > 0))) of_map = take_citation();
+    if (code == kUserDefined && out_.crs.empty() && out_.unread.empty()) {
+      out_.unread = "its GeoTIFF keys define a projection of their own that is not read";
     }
     if (unit > 0 && of_map > 0 && unit_of_length(unit) != unit_of_length(of_map)) {
-      out_.units.doubt = "its GeoTIFF keys contradict each other: they name the unit " +
-                         name_of_length(unit) + ", and " + out_.crs + ", whose unit is " +
-                         units_text(of_map) + ". It is taken to be in the named unit";
+      out_.units.doubt =
+          "its GeoTIFF keys contradict each other: they name the unit " + name_of_length(unit) +
+          ", and " +
+          (out_.crs.starts_with("EPSG:") ? out_.crs + ", whose unit is " : "a citation in ") +
+          units_text(of_map) + ". It is taken to be in the named unit";
     }
     if (!(unit > 0)) unit = of_map;
+    // Some writers name the unit of the plane in the key of geodetic systems.
+    if (!(unit > 0) && !out_.unread.empty() && !is_in_some_foot_) {
+      unit = unit_of_code(context_, keys_.code(kGeodeticLinearUnit), "linear");
+    }
     if (unit > 0) set_plane(unit);
+  }
+
+  /// Takes the system of a citation, where no other key names one that is read. Returns the unit
+  /// that the citation names, in metres, or 0.
+  double take_citation() {
+    Cited cited = cited_plane();
+    if (cited.units.plane == LengthUnit::kDegrees) out_.units.plane = LengthUnit::kDegrees;
+    if (!cited.units.trouble.empty()) out_.units.trouble = cited.units.trouble;
+    if (!cited.system.empty()) out_.unread.clear();
+    if (!cited.unread.empty()) {
+      is_in_some_foot_ = true;
+      out_.unread = std::move(cited.unread);
+    }
+    out_.crs = std::move(cited.system);
+    return cited.plane();
+  }
+
+  /// The citation of heights, or what the citation of all says after that of the plane.
+  std::string_view cited_heights() const {
+    const std::string_view own = keys_.text(kVerticalCitation), all = keys_.text(kCitation);
+    const std::size_t at = all.find(kAndHeights);
+    if (!own.empty() || at == std::string_view::npos) return own;
+    return all.substr(at + kAndHeights.size());
   }
 
   void read_heights() {
@@ -206,9 +307,14 @@ class Reading {
       } else if (named == 0) {
         note_unread(kVerticalSystem, code, "the code of a system of heights that PROJ knows");
       }
-    } else if (code == kUserDefined && named == 0) {
-      note_unread(kVerticalSystem, code, "a system of heights, or the unit of heights in key 4099");
-    } else if (!out_.crs.empty()) {
+    } else if (named == 0) {
+      of_system = read_citation(cited_heights(), true).units.heights;
+      if (of_system == 0 && code == kUserDefined) {
+        note_unread(kVerticalSystem, code,
+                    "a system of heights, or the unit of heights in key 4099");
+      }
+    }
+    if (of_system == 0 && code == 0 && !out_.crs.empty()) {
       of_system = scan_crs_of(out_.crs).units.heights;
     }
     out_.units.heights = named > 0 ? named : of_system;
@@ -301,12 +407,15 @@ class Reading {
   const GeotiffKeys& keys_;
   PJ_CONTEXT* context_;
   GeotiffCrs out_;
+  bool is_in_some_foot_ = false;  ///< whether a citation names a foot and not which
 };
 
 }  // namespace
 
 void GeotiffKeys::take(unsigned record, std::span<const std::byte> payload) {
-  std::vector<std::byte>& kept = record == 34735 ? directory_ : numbers_;
+  std::vector<std::byte>& kept = record == kDirectory ? directory_
+                                 : record == kNumbers ? numbers_
+                                                      : texts_;
   if (kept.empty()) kept.assign(payload.begin(), payload.end());
 }
 
@@ -333,7 +442,6 @@ std::uint16_t GeotiffKeys::code(std::uint16_t key) const {
 }
 
 std::optional<double> GeotiffKeys::number(std::uint16_t key) const {
-  constexpr std::uint16_t kNumbers = 34736;
   const auto entry = entry_of(directory_, key);
   if (entry.empty()) return std::nullopt;
   const auto where = load<std::uint16_t>(entry.data() + 2);
@@ -341,6 +449,18 @@ std::optional<double> GeotiffKeys::number(std::uint16_t key) const {
   if (where == 0) return static_cast<double>(at);
   if (where != kNumbers || 8 * (at + 1) > numbers_.size()) return std::nullopt;
   return load<double>(numbers_.data() + 8 * at);
+}
+
+std::string_view GeotiffKeys::text(std::uint16_t key) const {
+  const auto entry = entry_of(directory_, key);
+  if (entry.empty() || load<std::uint16_t>(entry.data() + 2) != kTexts) return {};
+  const std::size_t at = load<std::uint16_t>(entry.data() + 6);
+  if (at >= texts_.size()) return {};
+  const std::string_view all(reinterpret_cast<const char*>(texts_.data()), texts_.size());
+  std::string_view text = all.substr(at, load<std::uint16_t>(entry.data() + 4));
+  text = text.substr(0, text.find('\0'));
+  while (text.ends_with('|')) text.remove_suffix(1);
+  return text;
 }
 
 GeotiffCrs GeotiffKeys::crs() const {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/scans/scan_crs.hpp"
@@ -22,11 +23,11 @@ struct GeotiffCrs {
   std::string unread = {}, unread_heights = {};
 };
 
-/// GeoTIFF keys, as LAS keeps them in the records 34735 and 34736. Codes are those of EPSG and are
+/// GeoTIFF keys, as LAS keeps them in the records 34735 to 34737. Codes are those of EPSG and are
 /// looked up in PROJ's database. Source: OGC GeoTIFF 1.1, LAS 1.4 R15 section 3.3.
 class GeotiffKeys {
  public:
-  /// Takes the contents of one of the two records, by its number. The first of each counts.
+  /// Takes the contents of one of the three records, by its number. The first of each counts.
   void take(unsigned record, std::span<const std::byte> payload);
 
   /// What the keys say. A directory that is cut off is read as far as it goes. The last keys of
@@ -37,11 +38,13 @@ class GeotiffKeys {
   std::uint16_t code(std::uint16_t key) const;
   /// The value of a key that holds a number; nullopt where it is missing.
   std::optional<double> number(std::uint16_t key) const;
+  /// The value of a key that holds a text, without the bar that ends it; empty where it is missing.
+  std::string_view text(std::uint16_t key) const;
 
   friend bool operator==(const GeotiffKeys&, const GeotiffKeys&) = default;
 
  private:
-  std::vector<std::byte> directory_, numbers_;
+  std::vector<std::byte> directory_, numbers_, texts_;
 };
 
 }  // namespace clearway

@@ -9,11 +9,13 @@
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/messages/messages.hpp"
+#include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/las/las_records.hpp"
 #include "io/scans/laz/laz_reader.hpp"
+#include "io/scans/text_copy.hpp"
 
 namespace clearway {
 namespace {
@@ -83,6 +85,7 @@ class LasReader final : public PointReader {
       refuse_surplus();
     } else if (header_.tail_count > 0) {
       points_ += surplus(header_.tail_offset);
+      check_surplus(header_.tail_offset);
     }
     info_.quantisation = header_.quantisation;
     info_.declared_points = header_.points;
@@ -105,6 +108,7 @@ class LasReader final : public PointReader {
           std::min<std::uint64_t>({most, kBatchPoints - batch.quanta.size(), points_ - next_});
       const auto bytes = wanted > 0 ? take_records(wanted) : take_more_records();
       if (bytes.empty()) break;
+      if (!input_.can_seek()) feeds_.add(bytes);
       append(bytes, batch);
       next_ += wanted > 0 ? wanted : 1;
     }
@@ -151,8 +155,22 @@ class LasReader final : public PointReader {
     return (end - std::min(end, header_.points_end())) / header_.record_bytes;
   }
 
+  /// Throws InputError where bytes between the last declared point and `end`, where the points end,
+  /// are no whole records. Before extended records, a gap of less than a record is accepted.
+  void check_surplus(std::uint64_t end) const {
+    const std::uint64_t bytes = end - std::min(end, header_.points_end());
+    if (bytes % header_.record_bytes == 0) return;
+    if (header_.tail_count > 0 && bytes < header_.record_bytes) return;
+    refuse(input_.name(),
+           "has " + counted(bytes, "byte") + " more behind its " + std::to_string(header_.points) +
+               " points, which end at byte " + std::to_string(header_.points_end()) +
+               "; expected whole records of " + std::to_string(header_.record_bytes) +
+               " bytes or none. The file is damaged: copy or export it again");
+  }
+
   void refuse_surplus() const {
     const std::uint64_t end = header_.tail_count > 0 ? header_.tail_offset : *input_.size();
+    check_surplus(end);
     const std::uint64_t more = surplus(end);
     if (more == 0) return;
     refuse(input_.name(),
@@ -179,6 +197,7 @@ class LasReader final : public PointReader {
     if (input_.can_seek() || header_.tail_count > 0) return {};
     const std::size_t record = header_.record_bytes;
     const auto bytes = input_.take(record);
+    if (bytes.empty()) check_surplus(input_.end_position());
     if (!bytes.empty()) ++points_;
     return bytes;
   }
@@ -214,6 +233,7 @@ class LasReader final : public PointReader {
     info_.set(crs_.stated());
     tail_read_ = true;
     if (points_ == header_.points) return;
+    if (feeds_.are_all_pairs()) refuse_text_copy(input_.name());
     info_.remarks.push_back(warning("las-count",
                                     input_.name() + ": its header declares " +
                                         std::to_string(header_.points) + " points, but " +
@@ -231,6 +251,7 @@ class LasReader final : public PointReader {
   /// Number of points; in a stream it may grow beyond what the header declares.
   std::uint64_t points_;
   std::uint64_t next_ = 0;  ///< point to read next
+  LineFeeds feeds_;         ///< in the points of a stream
   bool tail_read_ = false;
   /// Where the GPS time is in a record; nullopt unless times are wanted and exist.
   std::optional<std::size_t> time_byte_;
@@ -264,6 +285,7 @@ std::unique_ptr<PointReader> read_compressed(InputBuffer input, const LasPublicH
 }  // namespace
 
 std::unique_ptr<PointReader> read_las(InputBuffer input, bool with_times) {
+  refuse_seven_bits(input);
   const LasPublicHeader header = read_las_header(input);
   LasRecords records;
   read_las_vlrs(input, header, records);

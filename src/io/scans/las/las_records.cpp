@@ -22,14 +22,41 @@ std::string_view padded_text(std::span<const std::byte> bytes) {
   return text.substr(0, text.find('\0'));
 }
 
-constexpr unsigned kWkt = 2112, kGeoKeys = 34735, kGeoNumbers = 34736;
+constexpr unsigned kWkt = 2112, kGeoKeys = 34735, kGeoTexts = 34737;
+constexpr unsigned kMathTransform = 2111, kPtxHeader = 2001;
+
+/// What a record says that places the points, see StatedCrs::unplaced; empty for other records and
+/// where it leaves the points where they are.
+std::string placement_in(std::string_view user, unsigned id, std::span<const std::byte> payload) {
+  const std::string name = "its record " + std::string(user) + " " + std::to_string(id);
+  if (user == "LAStools" && id == kPtxHeader) {
+    // LASlib writes the header of a scan in PTX, whether it has applied the matrix or not.
+    constexpr std::size_t kMatrix = 144, kNumbers = 16;
+    constexpr double kNoise = 1e-9;
+    if (payload.size() < kMatrix + kNumbers * sizeof(double)) return {};
+    bool moves = false;
+    for (std::size_t i = 0; i < kNumbers; ++i) {
+      const auto number = load<double>(payload.data() + kMatrix + i * sizeof(double));
+      moves = moves || !(std::abs(number - (i % 5 == 0 ? 1 : 0)) <= kNoise);
+    }
+    return moves ? name +
+                       " holds the matrix of a scanner and does not say whether it has been applied"
+                 : "";
+  }
+  if (user == "LASF_Projection" && id == kMathTransform) {
+    const bool transforms = crs_text_of(payload).find("_MT[") != std::string::npos;
+    return transforms ? name + " holds a transformation of the points that is not read" : "";
+  }
+  return {};
+}
 
 /// Takes the CRS from a record. payload: the whole record after its header.
 void note_record(std::string_view user, unsigned id, std::span<const std::byte> payload,
                  LasCrs& crs) {
-  if (user == "LASF_Projection" && (id == kGeoKeys || id == kGeoNumbers)) {
+  if (user == "LASF_Projection" && id >= kGeoKeys && id <= kGeoTexts) {
     crs.geotiff.take(id, payload);
   }
+  if (crs.unplaced.empty()) crs.unplaced = placement_in(user, id, payload);
   if (id != kWkt) return;
   std::string* wkt = user == "LASF_Projection" ? &crs.wkt
                      : user == "liblas"        ? &crs.foreign_wkt
@@ -40,7 +67,7 @@ void note_record(std::string_view user, unsigned id, std::span<const std::byte> 
 /// Keeps the first record of each kind that copies of points need.
 void keep_record(const std::string& user, unsigned id, std::span<const std::byte> payload,
                  LasRecords& records) {
-  constexpr unsigned kExtraBytes = 4, kGeoTexts = 34737;
+  constexpr unsigned kExtraBytes = 4;
   if (user == "LASF_Spec" && id == kExtraBytes && records.extra_bytes.empty()) {
     records.extra_bytes.assign(payload.begin(), payload.end());
   }
@@ -54,8 +81,9 @@ void keep_record(const std::string& user, unsigned id, std::span<const std::byte
 }
 
 bool is_about_crs(std::string_view user, unsigned id) {
+  if (user == "LAStools") return id == kPtxHeader;
   return (user == "LASF_Projection" || user == "liblas") &&
-         (id == kWkt || id == kGeoKeys || id == kGeoNumbers);
+         (id == kWkt || id == kMathTransform || (id >= kGeoKeys && id <= kGeoTexts));
 }
 
 }  // namespace
@@ -63,12 +91,14 @@ bool is_about_crs(std::string_view user, unsigned id) {
 StatedCrs LasCrs::stated() const {
   const GeotiffCrs keys = geotiff.crs();
   StatedCrs out = stated_crs_of(wkt.empty() ? foreign_wkt : wkt);
+  out.unplaced = unplaced;
   const bool is_read = !out.crs.empty() && out.crs_unread.empty();
   if (is_read) {
     const bool plane_by_keys = out.unit == LengthUnit::kUnknown && out.unit_trouble.empty();
     if (plane_by_keys) {
       out.unit = keys.units.plane;
       out.unit_trouble = keys.units.trouble;
+      if (out.unit == LengthUnit::kUnknown) out.unit_unread = keys.unread;
     } else if (keys.units.plane != LengthUnit::kUnknown && keys.units.plane != out.unit) {
       out.unit_doubt = "its well-known text names the unit " + to_string(out.unit) +
                        ", its GeoTIFF keys " + to_string(keys.units.plane) +
@@ -87,7 +117,9 @@ StatedCrs LasCrs::stated() const {
     return out;
   }
   if (!out.crs_unread.empty() && keys.units.plane == LengthUnit::kUnknown) return out;
-  out.crs_doubt = keys.unread.empty() ? keys.unread_heights : keys.unread;
+  const bool has_unit = keys.units.plane != LengthUnit::kUnknown;
+  if (!has_unit) out.unit_unread = keys.unread;
+  out.crs_doubt = has_unit && !keys.unread.empty() ? keys.unread : keys.unread_heights;
   if (!out.crs_unread.empty()) {
     out.crs_doubt = std::exchange(out.crs_unread, {}) + " is not read, so its GeoTIFF keys count";
   }

@@ -17,11 +17,13 @@
 
 namespace clearway {
 
-/// What the variable length records say of the coordinate reference system.
+/// What the variable length records say of the coordinate reference system and of the place of the
+/// points in it.
 struct LasCrs {
   std::string wkt;          ///< from the record of user LASF_Projection
   std::string foreign_wkt;  ///< from the copy of that record that liblas writes
   GeotiffKeys geotiff;
+  std::string unplaced;  ///< see StatedCrs
 
   /// What all of it says. Well-known text takes precedence over GeoTIFF keys; where PROJ does not
   /// read the one, the other counts.

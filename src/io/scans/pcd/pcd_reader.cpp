@@ -18,6 +18,7 @@
 #include "io/scans/pcd/lzf_stream.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_reader.hpp"
+#include "io/scans/text_copy.hpp"
 
 namespace clearway {
 namespace {
@@ -128,6 +129,8 @@ class BinaryPcdReader final : public PcdBodyReader {
  public:
   BinaryPcdReader(InputBuffer input, PcdHeader header)
       : PcdBodyReader(std::move(input), std::move(header)), stride_(header_.point_bytes(true)) {
+    refuse_if_copied_as_text(input_);
+    refuse_seven_bits(input_);
     const std::uint64_t room = *input_.size() - input_.position();
     if (header_.points > room / stride_) {
       refuse(input_.name(), "ends at byte " + std::to_string(*input_.size()) + ", within point " +
@@ -183,6 +186,8 @@ class CompressedPcdReader final : public PcdBodyReader {
  public:
   CompressedPcdReader(InputBuffer input, PcdHeader header)
       : PcdBodyReader(std::move(input), std::move(header)) {
+    refuse_if_copied_as_text(input_);
+    refuse_seven_bits(input_);
     const auto sizes = input_.take(2 * sizeof(std::uint32_t));
     if (sizes.empty()) {
       refuse(input_.name(), "ends at byte " + std::to_string(input_.end_position()) +

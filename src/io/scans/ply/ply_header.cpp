@@ -1,5 +1,6 @@
 #include "io/scans/ply/ply_header.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
@@ -74,10 +75,18 @@ class HeaderParser {
   }
 
   /// Whether a line is a comment or remark, which describes no element. Takes the spacing and the
-  /// unit from comments that give them.
+  /// unit from comments that give them, and the name of one that places the points, as 8i and MPEG
+  /// write it.
   bool is_remark(const std::vector<std::string_view>& words) {
     if (words.empty() || words[0] == "obj_info") return true;
     if (words[0] != "comment") return false;
+    if (words.size() > 2 && words[1].starts_with("frame_to_world_")) {
+      const double still = words[1].ends_with("scale") ? 1 : 0;
+      const bool moves = std::any_of(words.begin() + 2, words.end(), [still](auto word) {
+        return parse_whole_number(word) != still;
+      });
+      if (moves) header_.unplaced = "its comment " + std::string(words[1]) + " is not applied";
+    }
     if (words.size() == 5 && words[1] == "clearway" && words[2] == "model" &&
         words[3] == "spacing") {
       const std::optional<double> metres = parse_whole_number(words[4]);

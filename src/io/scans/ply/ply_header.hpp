@@ -49,6 +49,8 @@ struct PlyHeader {
   /// Unit of the coordinates from the comment that begins with kUnitComment; null where there is
   /// none.
   const NamedUnit* unit = nullptr;
+  /// A comment that places the points, see StatedCrs; empty where there is none.
+  std::string unplaced = {};
 
   const PlyElement& vertices() const { return elements[vertex]; }
 };

@@ -11,6 +11,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/text/point_blocks.hpp"
+#include "io/scans/text_copy.hpp"
 
 namespace clearway {
 namespace {
@@ -240,6 +241,8 @@ class BinaryPlyReader final : public PlyBodyReader {
       : PlyBodyReader(std::move(input), std::move(header)),
         swapped_(header_.format == PlyFormat::kBigEndian) {
     check_size();
+    refuse_if_copied_as_text(input_);
+    refuse_seven_bits(input_);
     begin();
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < header_.coordinates[i]; ++k) {

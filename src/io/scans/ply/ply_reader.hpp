@@ -35,6 +35,7 @@ class PlyBodyReader : public PointReader {
       info_.unit = header_.unit->environment;
       info_.any_foot = header_.unit->any_foot;
     }
+    info_.unplaced = header_.unplaced;
     for (const PlyElement& element : header_.elements) {
       if (element.name == "face") info_.faces += element.count;
     }

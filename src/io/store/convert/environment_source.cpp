@@ -11,8 +11,10 @@
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/declared_box.hpp"
 #include "io/store/convert/converted_heights.hpp"
 #include "io/store/convert/coordinate_range.hpp"
+#include "io/store/convert/file_boxes.hpp"
 #include "io/store/convert/read_points.hpp"
 #include "io/store/convert/spooled_reader.hpp"
 #include "io/store/convert/withheld_cubes.hpp"
@@ -375,6 +377,7 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
     append_kept(records, batch);
   }
   batch.whole = FileBox::of(batch.quanta);
+  count_beyond(batch);
   if (corridor_ != nullptr) {
     check_bounds(records, batch);
     drop_far(batch);
@@ -413,7 +416,7 @@ void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& o
   out.turn.reset();
   out.records = out.far_points = out.unread_points = records.unread;
   out.unread_bytes = records.unread_bytes;
-  out.whole.points = records.unread;
+  out.whole = {.points = records.unread};
   for (int k = 0; k < 3; ++k) {
     const auto quantum = [&](double at) {
       const double whole = std::nearbyint((at - quantisation_.offset[k]) / quantisation_.scale[k]);
@@ -421,6 +424,19 @@ void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& o
     };
     out.whole.lo[k] = quantum(records.bounds.lo[k]);
     out.whole.hi[k] = quantum(records.bounds.hi[k]);
+  }
+  const std::optional<Box> reach = reach_of(infos_[out.file].declared_box);
+  if (reach && !reach->meets(records.bounds)) out.whole.beyond = records.unread;
+}
+
+/// Counts the points out of reach of the box that their file declares.
+void EnvironmentSource::count_beyond(QuantaBatch& out) const {
+  const std::optional<Box> reach = reach_of(infos_[out.file].declared_box);
+  if (!reach || out.whole.points == 0) return;
+  const Box box = box_of(out.whole, quantisation_);
+  if (reach->contains(box.lo) && reach->contains(box.hi)) return;
+  for (const auto& q : out.quanta) {
+    if (!reach->contains(position(quantisation_, q[0], q[1], q[2]))) ++out.whole.beyond;
   }
 }
 

@@ -209,6 +209,7 @@ class EnvironmentSource {
   InputPosition position_after(const QuantaBatch& batch) const;
   void append_unread(const RecordBatch& records, QuantaBatch& out) const;
   void check_bounds(const RecordBatch& records, const QuantaBatch& batch) const;
+  void count_beyond(QuantaBatch& out) const;
   void drop_far(QuantaBatch& out) const;
   [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
 

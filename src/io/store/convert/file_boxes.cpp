@@ -21,11 +21,6 @@ constexpr double kLeastLength = 0.1;         // metres; a smaller input has no s
 constexpr std::size_t kMostCompared = 5000;  // number of files that are compared in pairs
 constexpr std::size_t kNamed = 3;
 
-Box box_of(const FileBox& box, const Quantisation& quantisation) {
-  return {position(quantisation, box.lo[0], box.lo[1], box.lo[2]),
-          position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
-}
-
 std::string text_of(const Box& box) {
   const auto corner = [](const Vec3& p) {
     return "(" + format_number(std::round(p.x)) + ", " + format_number(std::round(p.y)) + ", " +
@@ -156,6 +151,11 @@ std::vector<FileBox> FileBoxes::boxes(std::size_t files) const {
   return out;
 }
 
+Box box_of(const FileBox& box, const Quantisation& quantisation) {
+  return {position(quantisation, box.lo[0], box.lo[1], box.lo[2]),
+          position(quantisation, box.hi[0], box.hi[1], box.hi[2])};
+}
+
 std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation) {
   std::optional<Box> common;
   for (const FileBox& one : boxes) {
@@ -166,25 +166,17 @@ std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation
   return common;
 }
 
-std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
-                                             const Quantisation& quantisation,
-                                             std::span<const std::filesystem::path> files,
-                                             std::span<const CloudInfo> infos) {
-  std::size_t count = 0;
-  std::string first;
+std::vector<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                           const Quantisation& quantisation,
+                                           std::span<const std::filesystem::path> files,
+                                           std::span<const CloudInfo> infos) {
+  BoundsWarnings warnings;
   for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
-    if (boxes[i].points == 0 || !infos[i].declared_box) continue;
-    const Box found = box_of(boxes[i], quantisation);
-    if (!goes_far_beyond(*infos[i].declared_box, found)) continue;
-    if (count++ > 0) continue;
-    first = files[i].string() + ": points lie far beyond the bounds of its header. It declares " +
-            declared_box_text(*infos[i].declared_box) + " and has " + declared_box_text(found);
+    if (boxes[i].beyond == 0) continue;
+    warnings.add(files[i].string(), *infos[i].declared_box,
+                 {boxes[i].points, boxes[i].beyond, box_of(boxes[i], quantisation)});
   }
-  if (count == 0) return std::nullopt;
-  if (count > 1) first += ". " + format_count(count - 1) + " more files are alike";
-  return warning("declared-bounds",
-                 first + ". Some records may be damaged or zero, or the header of another scan",
-                 {{"files", static_cast<double>(count)}});
+  return warnings.messages();
 }
 
 std::optional<Message> cut_off_points(std::span<const FileBox> boxes,

@@ -37,15 +37,18 @@ class FileBoxes {
   std::mutex mutex_;
 };
 
+/// The box in metres.
+Box box_of(const FileBox& box, const Quantisation& quantisation);
+
 /// The box of all inputs in metres; nullopt where there is no point.
 std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
 
-/// The warning on inputs whose points go far beyond the box that their file declares; nullopt where
-/// there is no such input. infos: of each input.
-std::optional<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
-                                             const Quantisation& quantisation,
-                                             std::span<const std::filesystem::path> files,
-                                             std::span<const CloudInfo> infos);
+/// Warnings on inputs with points far beyond the box that their file declares. infos: of each
+/// input.
+std::vector<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
+                                           const Quantisation& quantisation,
+                                           std::span<const std::filesystem::path> files,
+                                           std::span<const CloudInfo> infos);
 
 /// The warning on inputs with points at the ends of their integers; nullopt where there is none.
 std::optional<Message> cut_off_points(std::span<const FileBox> boxes,

@@ -73,10 +73,20 @@ void check_own(const std::filesystem::path& file, const CloudInfo& info, bool ig
     refuse_or_warn(file, "its coordinate reference system is in degrees",
                    ", expected lengths; project the scan first", ignore, common);
   }
+  if (!info.unit_unread.empty() && has_unit(info)) {
+    warn(common, "crs-not-read", file.string() + ": " + info.unit_unread);
+  } else if (!info.unit_unread.empty()) {
+    refuse_or_warn(file, info.unit_unread,
+                   ". So its unit is not known, expected one that is read. --unit names it", ignore,
+                   common);
+  }
   if (!info.crs_doubt.empty()) {
     warn(common, "crs-not-read",
          file.string() + ": " + info.crs_doubt +
              (has_unit(info) ? "" : ". Its unit is not known, so metres are assumed"));
+  }
+  if (!info.unplaced.empty()) {
+    refuse_or_warn(file, info.unplaced, std::string(kExpectedPlaced), ignore, common);
   }
   if (!info.unit_doubt.empty()) {
     warn(common, "units-contradict", file.string() + ": " + info.unit_doubt);
@@ -266,7 +276,7 @@ CommonCrs common_crs(std::span<const std::filesystem::path> files,
   const std::vector<CloudInfo> infos = with_unit(files, as_read, given.unit, ignore);
   for (std::size_t i = 0; i < infos.size(); ++i) check_own(files[i], infos[i], ignore, common);
   common.is_partly_read = std::ranges::any_of(infos, [](const CloudInfo& info) {
-    return !info.crs_unread.empty() || !info.crs_doubt.empty();
+    return !info.crs_unread.empty() || !info.unit_unread.empty() || !info.crs_doubt.empty();
   });
   choose_unit(files, infos, ignore, common);
   if (!given.unit_z.is_known()) warn_of_lone_heights(files, infos, common);

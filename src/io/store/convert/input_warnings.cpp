@@ -103,9 +103,9 @@ std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const Fi
   for (Message& warning : warnings_on_boxes(of_files, metadata.quantisation, files)) {
     log.add(std::move(warning));
   }
-  if (auto warning =
-          beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
-    log.add(std::move(*warning));
+  for (Message& warning :
+       beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
+    log.add(std::move(warning));
   }
   if (auto warning = cut_off_points(of_files, files, environment.infos())) {
     log.add(std::move(*warning));

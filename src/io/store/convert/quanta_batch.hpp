@@ -32,6 +32,7 @@ struct RecordBatch {
 /// Number and box of points of an input, in the store's integers.
 struct FileBox {
   std::uint64_t points = 0;
+  std::uint64_t beyond = 0;       ///< points out of reach of the declared box, see reach_of()
   std::int32_t lo[3]{}, hi[3]{};  ///< defined where there is a point
   CutOff cut_off{};               ///< of the points that are stored, where the input has integers
 
@@ -43,6 +44,7 @@ struct FileBox {
       hi[k] = points == 0 ? other.hi[k] : std::max(hi[k], other.hi[k]);
     }
     points += other.points;
+    beyond += other.beyond;
   }
 
   static FileBox of(std::span<const std::array<std::int32_t, 3>> quanta) {

@@ -246,8 +246,11 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
   file.scans[0].xml = bounds("0", "5");  // the points are in millimetres
   REQUIRE(remarks().size() == 1);
   CHECK(remarks()[0].severity == Message::Severity::kWarning);
+  check_equal(remarks()[0].code, "outside-bounds");
+  check_says(remarks()[0].text, "scan 1: all 2 points ... (5000, 0, 2000)");
+  file.scans[0].xml = bounds("0", "1500");
   check_equal(remarks()[0].code, "declared-bounds");
-  check_says(remarks()[0].text, "scan 1 ... (5000, 0, 2000)");
+  check_says(remarks()[0].text, "scan 1: 1 of 2 points");
   for (const auto& [least, greatest] : {std::pair{"0", "5000"},
                                         {"0", "4999.9"},
                                         {"0", "0"},

@@ -15,23 +15,34 @@ using namespace clearway::test;
 
 namespace {
 
-/// A key with a short, or with a number in the record of numbers.
+/// A key with a short, or with a number or a text in a record of its own.
 struct Key {
   std::uint16_t key;
-  std::variant<int, double> value;
+  std::variant<int, double, std::string> value;
 };
 
 GeotiffKeys keys_of(const std::vector<Key>& keys) {
   std::vector<std::uint16_t> words{1, 1, 0, static_cast<std::uint16_t>(keys.size())};
   std::vector<double> numbers;
+  std::string texts;
+  const auto add = [&](std::uint16_t key, int record, std::size_t count, std::size_t at) {
+    words.insert(words.end(), {key, static_cast<std::uint16_t>(record),
+                               static_cast<std::uint16_t>(count), static_cast<std::uint16_t>(at)});
+  };
   for (const Key& key : keys) {
-    const int* const code = std::get_if<int>(&key.value);
-    const auto at = static_cast<std::uint16_t>(code != nullptr ? *code : int(numbers.size()));
-    words.insert(words.end(),
-                 {key.key, static_cast<std::uint16_t>(code != nullptr ? 0 : 34736), 1, at});
-    if (code == nullptr) numbers.push_back(std::get<double>(key.value));
+    if (const auto* const code = std::get_if<int>(&key.value)) {
+      add(key.key, 0, 1, static_cast<std::size_t>(*code));
+    } else if (const auto* const number = std::get_if<double>(&key.value)) {
+      add(key.key, 34736, 1, numbers.size());
+      numbers.push_back(*number);
+    } else {
+      const std::string text = std::get<std::string>(key.value) + "|";
+      add(key.key, 34737, text.size(), texts.size());
+      texts += text;
+    }
   }
   GeotiffKeys out;
+  out.take(34737, std::as_bytes(std::span(texts)));
   out.take(34736, std::as_bytes(std::span(numbers)));
   out.take(34735, std::as_bytes(std::span(words)));
   return out;
@@ -53,6 +64,17 @@ struct Case {
 const std::array<double, 2> kUtm32{649187.875, 5318235.614};
 const std::array<double, 2> kOregon{655282.752, 848375.476};
 constexpr auto kMetre = LengthUnit::kMetre;
+
+const std::string kPeString =
+    R"(ESRI PE String = PROJCS["NAD_1983_StatePlane_California_III_FIPS_0403_Feet",)"
+    R"(GEOGCS["GCS_North_American_1983",DATUM["D_North_American_1983",)"
+    R"(SPHEROID["GRS_1980",6378137.0,298.257222101]],PRIMEM["Greenwich",0.0],)"
+    R"(UNIT["Degree",0.0174532925199433]],PROJECTION["Lambert_Conformal_Conic"],)"
+    R"(PARAMETER["False_Easting",6561666.666666666],PARAMETER["False_Northing",1640416.666666667],)"
+    R"(PARAMETER["Central_Meridian",-120.5],PARAMETER["Standard_Parallel_1",37.06666666666667],)"
+    R"(PARAMETER["Standard_Parallel_2",38.43333333333333],)"
+    R"(PARAMETER["Latitude_Of_Origin",36.5],UNIT["Foot_US",0.3048006096012192]])";
+const std::array<double, 2> kCalifornia{6126548.244, 2008012.813};
 
 const std::vector<Case> kCases{
     {"nothing", {}},
@@ -163,7 +185,62 @@ const std::vector<Case> kCases{
      kMetre,
      0,
      kUtm32,
-     0.9998734899}};
+     0.9998734899},
+    {"a citation with well-known text alone",
+     {{1024, 32767}, {3072, 32767}, {3073, kPeString}},
+     LengthUnit::kUsSurveyFoot,
+     0,
+     kCalifornia,
+     0.9999387279},
+    {"a citation with a name alone",
+     {{1024, 1}, {3072, 32767}, {3073, "PCS Name = NAD83 / California zone 3 (ftUS)"}},
+     LengthUnit::kUsSurveyFoot,
+     0,
+     kCalifornia,
+     0.9999387279},
+    {"a citation of all with a name",
+     {{1024, 1}, {1026, "NAD83 / California zone 3 (ftUS)|x"}},
+     LengthUnit::kUsSurveyFoot,
+     0,
+     kCalifornia,
+     0.9999387279},
+    {"a citation that names a unit",
+     {{1024, 1}, {3072, 32767}, {3073, "PCS Name = Site_7|LUnits = US survey foot"}},
+     LengthUnit::kUsSurveyFoot},
+    {"a citation of a site in metres", {{1024, 1}, {1026, "Site 7, meters"}}, kMetre},
+    {"a citation of what says nothing of a unit", {{1024, 1}, {1026, "Site 7, zone M"}}},
+    {"a citation of the geographic system below", {{1024, 1}, {1026, "WGS 84"}}},
+    {"a code and citations that say otherwise",
+     {{1024, 1}, {1026, "feet"}, {3072, 25832}, {3073, "(ftUS)"}},
+     kMetre,
+     0,
+     kUtm32,
+     0.9998734899},
+    {"a citation of heights",
+     {{1024, 1}, {3072, 25832}, {4096, 32767}, {4097, "NAVD88 height (ftUS)"}},
+     kMetre,
+     kSurveyFoot,
+     kUtm32,
+     0.9998734899},
+    {"a citation of both",
+     {{1024, 1}, {1026, "NAD83 / California zone 3 (ftUS) + Datum 7 (Feet)"}},
+     LengthUnit::kUsSurveyFoot,
+     kFoot,
+     kCalifornia,
+     0.9999387279},
+    {"a citation of a site in metres with heights in feet",
+     {{1024, 1}, {1026, "Site 7 (metres) + NAVD88 height (ftUS)"}},
+     kMetre,
+     kSurveyFoot},
+    {"a citation of heights in feet",
+     {{1024, 1}, {3072, 25832}, {4097, "Datum 7, Feet"}},
+     kMetre,
+     kFoot,
+     kUtm32,
+     0.9998734899},
+    {"a system in the key of units, and a geodetic unit",
+     {{1024, 1}, {2052, 9001}, {3076, 32632}},
+     kMetre}};
 
 }  // namespace
 
@@ -194,6 +271,9 @@ TEST_CASE("GeoTIFF keys that are not understood are named") {
   check_says(unread({{1024, 1}, {3072, 1}}), "key 3072 is 1,");
   check_says(unread({{1024, 1}, {3072, 4326}}), "key 3072 is 4326");
   check_says(unread({{1024, 7}}), "key 1024 is 7");
+  check_says(unread({{1024, 32767}, {3072, 32767}}), "projection of their own");
+  check_says(unread({{1024, 1}, {3072, 32767}, {2052, 9001}, {3073, "Site 7 Feet"}}),
+             "citation \"Site 7 Feet\" is in feet and does not say which");
   check_says(unread({{1024, 1}, {3072, 25832}, {4096, 5030}}), "key 4096 is 5030");
   check_says(unread({{1024, 1}, {3072, 25832}, {4096, 32767}}), "key 4096 is 32767");
   check_says(unread({{1024, 1}, {3072, 25832}, {4099, 9102}}), "key 4099 is 9102");

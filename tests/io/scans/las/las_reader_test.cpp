@@ -124,12 +124,6 @@ TEST_CASE("a file without points is valid and empty") {
   check_equal(read_all(scratch.write("a.las", las.build())).size(), 0);
 }
 
-TEST_CASE("bytes behind the points do no harm") {
-  ScratchFolder scratch;
-  LasBytes las;
-  CHECK(read_all(scratch.write("a.las", las.build() + "surplus")).quanta == las.points);
-}
-
 TEST_CASE("a CRS in an extended record is known at once from a file, at the end from a stream") {
   ScratchFolder scratch;
   LasBytes las;
@@ -323,16 +317,32 @@ TEST_CASE("a stream of many points beyond its count comes in whole batches") {
   CHECK(sizes == std::vector<std::size_t>{65536, 65536, 18928});
 }
 
-TEST_CASE("less than a record behind the points is padding, in a file and in a stream") {
+TEST_CASE("bytes behind the points that are no whole record are refused as damage") {
   LasBytes las;
   las.format = 2;
   ScratchFolder scratch;
-  const auto path = scratch.write("a.las", las.build() + std::string(25, 'p'));
+  const std::size_t more = GENERATE(1u, 25u, 27u, 51u);
+  const auto path = scratch.write("a.las", las.build() + std::string(more, 'p'));
+  for (const std::string& refusal : {refusal_of(path), stream_refusal_of(path)}) {
+    check_says(refusal, std::to_string(more) + " byte ... more behind its 3 points ... damaged");
+    CHECK(refusal.find("standard input are") == refusal.npos);
+  }
+  check_says(refusal_of(scratch.write("b.las", las.build() + std::string(26, 'p'))), "4 records");
+}
+
+TEST_CASE("less than a record between the points and an extended record is a gap") {
+  LasBytes las;
+  las.minor = 4;
+  las.evlrs = {{"someone", 1, "payload"}};
+  std::string bytes = las.build();
+  bytes.insert(las.points_end(), "gap");
+  LasBytes::put<std::uint64_t>(bytes, 235, las.points_end() + 3);
+  ScratchFolder scratch;
+  const auto path = scratch.write("a.las", bytes);
   for (const ReadCloud& cloud : {read_all(path), read_stream(path)}) {
     CHECK(cloud.quanta == las.points);
     CHECK(cloud.info.remarks.empty());
   }
-  check_says(refusal_of(scratch.write("b.las", las.build() + std::string(26, 'p'))), "4 records");
 }
 
 TEST_CASE("an empty LAS file that declares no points is no error") {

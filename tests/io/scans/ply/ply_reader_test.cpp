@@ -166,6 +166,23 @@ TEST_CASE("a PLY without vertices is valid and empty") {
   check_equal(read_all(path).size(), 0);
 }
 
+TEST_CASE("a comment that moves the points is named") {
+  ScratchFolder scratch;
+  const auto unplaced = [&](const std::string& comment) {
+    const auto path = scratch.write("a.ply", "ply\nformat ascii 1.0\ncomment " + comment +
+                                                 "\nelement vertex 1\nproperty float x\n"
+                                                 "property float y\nproperty float z\n"
+                                                 "end_header\n1 2 3\n");
+    return open_point_file(path)->info().unplaced;
+  };
+  check_says(unplaced("frame_to_world_scale 0.181985"), "frame_to_world_scale");
+  check_says(unplaced("frame_to_world_translation 0 -31.8 1"), "frame_to_world_translation");
+  for (const std::string still : {"frame_to_world_scale 1", "frame_to_world_translation 0 0 0",
+                                  "frame_to_world", "scale 2"}) {
+    check_equal(unplaced(still), "");
+  }
+}
+
 TEST_CASE("a malformed PLY header is refused with its line") {
   check_says(refusal_of_bytes(""), "`ply`");
   check_says(refusal_of_bytes("ply\nformat ascii 2.0\n"), "line 2 ... format");

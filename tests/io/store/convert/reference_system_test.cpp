@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -115,6 +116,7 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
   const std::vector<MapScan> scans{{kUtm32 + "," + kFeetHeights},
                                    {kUtm32 + "]," + kFeetHeights},
                                    {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
+                                   {"COMPD_CS[\"c\", " + kUtm32 + "], " + kFeetHeights + "]"},
                                    {third},
                                    {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
                                    {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
@@ -198,11 +200,48 @@ TEST_CASE("a system that is not read is refused, and never counts as none") {
     const Outcome ignored = outcome_of(MapScan{text}, {.ignore_crs = true});
     check_says(warning(ignored, "crs-ignored").text, "is not read");
   }
-  const Outcome keys = outcome_of(MapScan{"", {{1024, 1}, {3076, 32632}}});
-  check_equal(keys.messages, " crs-not-read ");
-  check_says(warning(keys, "crs-not-read").text, "key 3076 is 32632 ... metres are assumed");
+  const MapScan no_unit{"", {{1024, 1}, {3076, 32632}}};
+  check_says(outcome_of(no_unit).refusal, "key 3076 is 32632 ... --unit names it");
+  check_equal(outcome_of(no_unit, {.unit = FileUnit::named("m")}).messages, " crs-not-read ");
+  check_equal(outcome_of(no_unit, {.ignore_crs = true}).messages, " crs-ignored ");
+  const MapScan by_text{"LOCAL_CS[\"a\"]", {{1024, 1}, {3076, 32632}}};
+  check_says(outcome_of(by_text).refusal, "key 3076 is 32632 ... --unit names it");
+  check_equal(outcome_of(MapScan{"", {{1024, 1}, {4096, 5030}}}).messages, " crs-not-read ");
   const Outcome known = outcome_of(MapScan{"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}});
   check_equal(known.messages, " crs-not-read ");
+}
+
+TEST_CASE("a record that places the points is refused unless it leaves them where they are") {
+  const bool behind = GENERATE(false, true);  // whether in an extended record
+  const auto outcome = [&](const std::string& user, std::uint16_t id, const std::string& payload,
+                           bool ignore = false) {
+    LasBytes las;
+    if (behind) las.minor = 4;
+    (behind ? las.evlrs : las.vlrs) = {{user, id, payload}};
+    return outcome_of_files({{"a.las", las.build()}}, {.ignore_crs = ignore});
+  };
+  const auto ptx = [](double turn, double shift) {
+    std::array<double, 34> numbers{};  // the matrix is the last 16 of them
+    for (const std::size_t i : {18, 23, 28, 33}) numbers[i] = 1;
+    numbers[19] = turn;
+    numbers[20 + 10] = shift;
+    return std::string(reinterpret_cast<const char*>(numbers.data()), sizeof numbers);
+  };
+  for (const std::string& moves : {ptx(0.5, 0), ptx(0, 10), ptx(std::nan(""), 0)}) {
+    check_says(outcome("LAStools", 2001, moves).refusal,
+               "LAStools 2001 holds the matrix of a scanner ... such as PTX");
+    CHECK(outcome("LAStools", 2001, moves, true).has("crs-ignored"));
+  }
+  check_says(outcome("LASF_Projection", 2111, "PARAM_MT[\"Affine\"]").refusal, "2111");
+  for (const auto& [user, id, payload] :
+       std::vector<std::tuple<std::string, std::uint16_t, std::string>>{
+           {"LAStools", 2001, ptx(0, 0)},
+           {"LAStools", 2001, ptx(0, 10).substr(1)},
+           {"LAStools", 2000, ptx(0, 10)},
+           {"LASF_Spec", 7, ptx(0, 10)},
+           {"LASF_Projection", 2111, ""}}) {
+    CHECK(outcome(user, id, payload).refusal.empty());
+  }
 }
 
 TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %") {
