@@ -240,6 +240,7 @@ class Search {
     const StoreMetadata& metadata = store_.metadata();
     hashes.add(metadata.dates.first + "/" + metadata.dates.last);
     hashes.add(std::array{metadata.withheld ? metadata.withheld->left_out() : 0});
+    if (query_.seen && metadata.origins) hashes.add(std::array{metadata.origins->hash});
     return hashes.digest();
   }
 

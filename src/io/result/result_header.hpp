@@ -70,7 +70,7 @@ struct ResultNotes {
   ModelAxes model_axes = {};
   std::string length_unit = {};  ///< unit of the store, as in Store::length_unit()
   /// Hash of what is known of the inputs before the search: their warnings, without the words, the
-  /// days of the scans and the number of withheld points.
+  /// days of the scans, the number of withheld points and, for seen space, where scanners stood.
   std::uint64_t inputs_hash = 0;
 
   friend bool operator==(const ResultNotes&, const ResultNotes&) = default;

@@ -634,6 +634,17 @@ class Again(Site):
             self.check(other + " --force")
             self.check(words + " --force")
 
+    def test_other_origins_make_the_seen_space_anew(self):
+        origins = self.folder / "origins.csv"
+        words = f"scans {QUESTION} --origins origins.csv --seen -o"
+        origins.write_text("first,x,y,z\n0,1,2,3\n")
+        self.check(f"{words} site")
+        origins.write_text("first,x,y,z\n0,4,2,3\n")
+        self.check(f"{words} site --force")
+        self.check(f"{words} fresh")
+        self.assertEqual(bytes_of(self.folder / "site", ["result.h5"]),
+                         bytes_of(self.folder / "fresh", ["result.h5"]))
+
     def test_a_store_in_another_unit_makes_the_result_anew(self):
         run = f"run --env s.h5 {QUESTION} --first-pose -o r.h5 --resume"
         def result(unit):
