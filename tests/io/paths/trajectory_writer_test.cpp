@@ -46,7 +46,7 @@ TEST_CASE("what puts a path in doubt is kept by the paths that are made of it") 
       write_trajectory(poses, File::create(path), progress, "thin of a.csv", of_given);
     }
     std::vector<Message> remarks;
-    check_equal(read_trajectory(path, {}, &remarks), poses);
+    CHECK((read_trajectory(path, {}, &remarks) == poses));
     REQUIRE(remarks.size() == 1);
     CHECK(remarks[0].severity == kWarning);
     check_equal(remarks[0].code, "quaternion-order");
