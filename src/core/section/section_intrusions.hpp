@@ -12,7 +12,7 @@
 /// Which cells of a section stop a load, and how far they reach into it.
 namespace clearway {
 
-/// Why the section says nothing of any load, as a clause such as doubt_words(); empty where it does.
+/// Why the section says nothing of any load, as the end of a sentence; empty where it does.
 std::string doubt_about(const SectionData& section);
 
 /// Cells closer to an outline than this stop it: the margin, rounding, and between poses half of

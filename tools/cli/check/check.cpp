@@ -619,7 +619,7 @@ class Check {
   const CheckCommand& options_;
   CheckPlan plan_;
   std::optional<CheckRecord> record_;
-  ordered_json warnings_;  ///< all that the page shows, which are those of all steps
+  ordered_json warnings_;      ///< all that the page shows, which are those of all steps
   ordered_json corridor_key_;  ///< what the question's corridor depends on; null without --near
   std::vector<std::string> commands_;
   ordered_json reused_ = ordered_json::object();

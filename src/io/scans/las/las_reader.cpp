@@ -47,9 +47,10 @@ std::unique_ptr<PointReader> open_las_stream(File stream,
   InputBuffer input(std::move(stream), InputBuffer::Access::kStream);
   const auto head = input.peek(4);
   if (head.size() == 4 && std::memcmp(head.data(), "LASF", 4) != 0) {
-    refuse_byte(input.name(), 0,
-                "expected the signature LASF of LAS or LAZ, which alone are read from a pipe; write "
-                "it into a file first");
+    refuse_byte(
+        input.name(), 0,
+        "expected the signature LASF of LAS or LAZ, which alone are read from a pipe; write "
+        "it into a file first");
   }
   if (is_compressed(input)) {
     return read_las(spool_bytes(std::move(input), temporary_folder), options.with_times);

@@ -31,11 +31,11 @@ std::string placement_in(std::string_view user, unsigned id, std::span<const std
   const std::string name = "its record " + std::string(user) + " " + std::to_string(id);
   if (user == "LAStools" && id == kPtxHeader) {
     // LASlib writes the header of a scan in PTX, whether it has applied the matrix or not.
-    constexpr std::size_t kMatrix = 144, kNumbers = 16;
+    constexpr std::size_t kMatrix = 144, kEntries = 16;
     constexpr double kNoise = 1e-9;
-    if (payload.size() < kMatrix + kNumbers * sizeof(double)) return {};
+    if (payload.size() < kMatrix + kEntries * sizeof(double)) return {};
     bool moves = false;
-    for (std::size_t i = 0; i < kNumbers; ++i) {
+    for (std::size_t i = 0; i < kEntries; ++i) {
       const auto number = load<double>(payload.data() + kMatrix + i * sizeof(double));
       moves = moves || !(std::abs(number - (i % 5 == 0 ? 1 : 0)) <= kNoise);
     }
