@@ -420,7 +420,7 @@ void add_inside(const Answer& answer, ordered_json& out) {
 void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) {
   out["poses"] = answer.poses;
   out["colliding_points"] = answer.colliding_points;
-  if (!answer.classes.empty()) out["classes"] = json_of(answer.classes);
+  if (!answer.classes.empty()) out["classes"] = clearway::json_of(answer.classes);
   out["clearance_points"] = answer.clearance_points;
   out["profile_poses"] = answer.profile_poses;
   out["verdict"] = name_of(answer.verdict());
