@@ -64,7 +64,7 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
     {"cut-off",
      kWarning,
      kScans,
-     "Many points of a LAS or LAZ file are at the lowest or the greatest of the integers that a "
+     "Points of a LAS, LAZ or E57 file are at the lowest or the greatest of the integers that a "
      "coordinate can have, where a program cut off what lies beyond. The message gives their "
      "number for each axis.",
      {.doubt = Doubt::kQuestion}},
@@ -110,9 +110,8 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      "The coordinates look like longitudes and latitudes: no unit is named, and the heights span "
      "at least 50 times what the coordinates span themselves."},
     {"lost-digits", kWarning, kScans,
-     "All coordinates of an axis of a scan, or all positions of a path, are multiples of a "
-     "coarse step, such as whole metres above the radius, because rounded text or single floats "
-     "lost the rest."},
+     "The coordinates of an axis of a scan, or the positions of a path, come in a coarse step, "
+     "such as half a metre, because rounding or single floats lost the rest."},
     {"map-scale", kWarning, kScans,
      "Lengths on the map of the scans, or somewhere on the path, differ by more than 0.2 % from "
      "those on the ground. For scans the message has the scale at their middle along the worst "
@@ -479,13 +478,13 @@ inline constexpr auto kMessageKinds = std::to_array<MessageKind>({
      {.doubt = Doubt::kQuestion}},
     {"model-origin", kWarning, kQueries, "The model lies far from the origin of its frame."},
     {"model-size", kWarning, kQueries, "The model is implausibly large or small."},
+    {"model-spacing", kWarning, kQueries, "Model points are farther apart than the radius."},
     {"model-unit",
      kWarning,
      kQueries,
      "The shortest side of the model is above 30 m, or its longest one below 1 cm, so its unit is "
      "probably another one.",
      {.doubt = Doubt::kQuestion}},
-    {"model-spacing", kWarning, kQueries, "Model points are farther apart than the radius."},
     {"most-ignored", kWarning, kQueries,
      "Less than 1 % of the points of the environment are left to be searched."},
     {"motion-exceeds-cell", kWarning, kQueries,
