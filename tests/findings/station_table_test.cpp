@@ -22,7 +22,7 @@ using namespace clearway::test;
 
 namespace {
 
-struct Searched : SearchedScene {
+struct StationScene : SearchedScene {
   using SearchedScene::SearchedScene;
 
   StationTable table(double every, StationOptions options = {}) const {
@@ -34,7 +34,7 @@ struct Searched : SearchedScene {
 };
 
 /// Whether any point collides at a pose of the row, by trying all; or on a way that meets the row.
-std::vector<bool> touched_rows(const Searched& scene, double every) {
+std::vector<bool> touched_rows(const StationScene& scene, double every) {
   const std::vector<std::size_t> row_of = rows_of(scene.query.poses, every);
   std::vector<bool> out(row_of.back() + 1);
   for (const MovingBody& body : moving_bodies(scene.query)) {
@@ -57,7 +57,7 @@ std::vector<bool> touched_rows(const Searched& scene, double every) {
 
 /// Whether some colliding point has its first pose on the row or before, and its last one on it or
 /// behind.
-std::vector<bool> rows_between(const Searched& scene, double every) {
+std::vector<bool> rows_between(const StationScene& scene, double every) {
   const std::vector<std::size_t> row_of = rows_of(scene.query.poses, every);
   std::vector<bool> out(row_of.back() + 1);
   const auto first = scene.result().first_pose(), last = scene.result().last_pose();
@@ -77,7 +77,7 @@ Verdict worst_of(const StationTable& table) {
   return worst;
 }
 
-void check_scene(const Searched& scene, double every) {
+void check_scene(const StationScene& scene, double every) {
   CAPTURE(every);
   const StationTable table = scene.table(every);
   check_distances(table, expected_rows(scene.result(), scene.query, every), scene.query.radius);
@@ -114,7 +114,7 @@ TEST_CASE("rows of random scenes have the distances of all clearances, and every
     if (seed % 4 == 1) asked = {.radius = 0.12, .clearance = 0.2, .profile = 0.4};
     if (seed % 4 == 2) asked = {.radius = 0.12, .profile = 0.4};
     Query query(std::move(model), smooth_path(random, room, 50), asked);
-    const Searched scene(random_points(random, room, seed % 2 == 0 ? 60 : 600), query);
+    const StationScene scene(random_points(random, room, seed % 2 == 0 ? 60 : 600), query);
     for (const double every : {0.3, 1.0, 2.7, 100.0}) check_scene(scene, every);
   }
 }
@@ -136,7 +136,7 @@ TEST_CASE("rows of a vehicle are seen from its bodies, and are not clear where o
     const std::vector<Vec3> rear = random_points(random, {{-1.6, -0.5, 0}, {0.6, 0.5, 0.9}}, 30);
     query.bodies.push_back(follow({"front", Model{front}, {}, {}}, path, BodyStation{1}));
     query.bodies.push_back(follow({"rear", Model{rear}, {}, {}}, path, BodyPivots{-1, -3}));
-    const Searched scene(random_points(random, room, 25), query);
+    const StationScene scene(random_points(random, room, 25), query);
     for (const double every : {0.7, 2.0}) check_scene(scene, every);
     const StationTable table = scene.table(1);
     check_equal(table.bodies, {"front", "rear"});
@@ -167,8 +167,8 @@ TEST_CASE("rows of a vehicle are seen from its bodies, and are not clear where o
 }
 
 TEST_CASE("a pose on a border belongs to the later row, and the last pose to the last row") {
-  const Searched scene({{50, 50, 0}},
-                       Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
+  const StationScene scene({{50, 50, 0}},
+                           Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
   const StationTable table = scene.table(2);
   REQUIRE(table.rows.size() == 5);
   check_equal(table.rows[0].chainage_from, 0);
@@ -177,8 +177,8 @@ TEST_CASE("a pose on a border belongs to the later row, and the last pose to the
   for (const double x : {2.0, 1.9, 10.0, 8.0, 7.9}) {
     CAPTURE(x);
     // The point above is nearest where the model's top stands below it.
-    const Searched below_it({{x, 0, 1.5}},
-                            Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
+    const StationScene below_it({{x, 0, 1.5}},
+                                Query(kCar, straight_path(10), {.radius = 0.1, .clearance = 9}));
     const std::vector<StationRow> rows = below_it.table(2).rows;
     const auto own = static_cast<std::size_t>(std::min(4.0, std::floor(std::round(2 * x) / 4)));
     for (std::size_t i = 0; i < rows.size(); ++i) CHECK(rows[i].least.has_value() == (i == own));
@@ -193,14 +193,14 @@ TEST_CASE("a pose on a border belongs to the later row, and the last pose to the
 
 TEST_CASE("sums of steps make no row of their own") {
   const std::vector<Pose> path = straight_path(10, 0.1);  // as long as 9.99999999999998 m
-  const Searched scene({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
+  const StationScene scene({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
   check_equal(scene.table(chainages(path).back() / 2 * (1 - 1e-12)).rows.size(), 2);
   check_equal(scene.table(5).rows.size(), 2);
 }
 
 TEST_CASE("chainages begin where asked, and stations lie between those of the poses") {
   const std::vector<Pose> path = straight_path(10);
-  const Searched scene({{4, 0.7, 0}}, Query(kCar, path, {.radius = 0.1, .clearance = 1}));
+  const StationScene scene({{4, 0.7, 0}}, Query(kCar, path, {.radius = 0.1, .clearance = 1}));
   std::vector<double> station;
   for (const double chainage : chainages(path)) station.push_back(1000 - 2 * chainage);
   StationOptions options;
@@ -220,7 +220,7 @@ TEST_CASE("chainages begin where asked, and stations lie between those of the po
 }
 
 TEST_CASE("lengths of stretches that make no sense are refused") {
-  const Searched scene({{4, 0.7, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  const StationScene scene({{4, 0.7, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
   const double infinite = std::numeric_limits<double>::infinity();
   for (const double every : {0.0, -1.0, std::nan(""), infinite, 1e-5, 1e-300}) {
     CAPTURE(every);
@@ -232,7 +232,7 @@ TEST_CASE("lengths of stretches that make no sense are refused") {
 }
 
 TEST_CASE("without clearances the distances are empty and a warning says so") {
-  const Searched scene({{4, 0.55, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  const StationScene scene({{4, 0.55, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
   const StationTable table = scene.table(2);
   REQUIRE(table.warnings.size() == 1);
   check_equal(table.warnings[0].code, "no-clearances");
@@ -242,22 +242,22 @@ TEST_CASE("without clearances the distances are empty and a warning says so") {
 }
 
 TEST_CASE("a path of one pose has one row without overthrow, and one without poses has none") {
-  const Searched scene({{1, 0.55, 0}},
-                       Query(kCar, straight_path(0), {.radius = 0.1, .clearance = 1}));
+  const StationScene scene({{1, 0.55, 0}},
+                           Query(kCar, straight_path(0), {.radius = 0.1, .clearance = 1}));
   const StationTable table = scene.table(5);
   REQUIRE(table.rows.size() == 1);
   check_equal(table.rows[0].chainage_to, 0);
   CHECK(table.rows[0].verdict == Verdict::kConflict);
   CHECK(table.rows[0].left);
   CHECK_FALSE(table.rows[0].overthrow.at(0).end);
-  const Searched none({{1, 0.55, 0}}, Query(kCar, {}, {.radius = 0.1}));
+  const StationScene none({{1, 0.55, 0}}, Query(kCar, {}, {.radius = 0.1}));
   CHECK(none.table(5).rows.empty());
 }
 
 TEST_CASE("rows without a pose are not clear unless ways are searched") {
   const std::vector<Pose> path = straight_path(10, 2.5);
-  const Searched poses({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
-  const Searched ways({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1, .between_poses = true}));
+  const StationScene poses({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
+  const StationScene ways({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1, .between_poses = true}));
   std::size_t searched = 0;
   for (const StationRow& row : poses.table(1).rows) searched += row.is_searched ? 1 : 0;
   check_equal(searched, 5);
@@ -265,7 +265,7 @@ TEST_CASE("rows without a pose are not clear unless ways are searched") {
 }
 
 TEST_CASE("a question in doubt leaves no row clear") {
-  const Searched far({{5000, 50, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
+  const StationScene far({{5000, 50, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
   for (const StationRow& row : far.table(2).rows) {
     CHECK(row.verdict == Verdict::kUndecided);
     CHECK(row.reasons == std::vector{Reason::kQuestionInDoubt});
@@ -276,7 +276,7 @@ TEST_CASE("a path that comes back later does not touch all the way") {
   std::vector<Pose> path;  // 40 m out along x, aside, and back past where it began
   for (int i = 0; i <= 80; ++i) path.push_back(translation({0.5 * i, 0, 0}));
   for (int i = 1; i <= 80; ++i) path.push_back(translation({40 - 0.5 * i, 0.3, 0}));
-  const Searched scene({{1.0, 0.55, 0}}, Query(kCar, path, {.radius = 0.3}));
+  const StationScene scene({{1.0, 0.55, 0}}, Query(kCar, path, {.radius = 0.3}));
   REQUIRE(scene.result().first_pose()[0] < 10);
   REQUIRE(scene.result().last_pose()[0] > 150);
   for (const StationRow& row : scene.table(5).rows) {
@@ -445,7 +445,7 @@ TEST_CASE("with an error budget certain groups make conflicts and other points l
   add(post(25, 0.51, 5));   // certainly too close, but few
   add(post(40, 0.58, 12));  // too close, but not certainly
   add(post(52, 0.63, 12));  // near
-  const Searched scene(places, Query(kCar, path, with_budget()));
+  const StationScene scene(places, Query(kCar, path, with_budget()));
   const Result result = scene.result();
   REQUIRE(result.near().size() == 12);
   REQUIRE(result.answer().certain.points == 17);
@@ -482,7 +482,7 @@ TEST_CASE("the verdicts of the rows together are that of the result, with a budg
                              5 + static_cast<std::size_t>(below(random, 12)));
       if (below(random, 3) > 0) places.insert(places.end(), more.begin(), more.end());
     }
-    const Searched scene(places, Query(kCar, straight_path(20, 0.05), with_budget()));
+    const StationScene scene(places, Query(kCar, straight_path(20, 0.05), with_budget()));
     const Verdict verdict = scene.result().answer().verdict();
     ++met[verdict];
     for (const double every : {0.5, 3.0, 50.0}) CHECK(worst_of(scene.table(every)) == verdict);
@@ -548,7 +548,7 @@ TEST_CASE("a CSV and a JSON of the table have the fixed columns") {
     }
     query.bodies.push_back(std::move(body));
   }
-  const Searched scene({{1, 0.7, 0}, {50, 50, 0}}, query);
+  const StationScene scene({{1, 0.7, 0}, {50, 50, 0}}, query);
   StationOptions options;
   options.every = 2.5;
   options.bodies = scene.query.bodies;

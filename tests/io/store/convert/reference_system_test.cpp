@@ -218,7 +218,9 @@ TEST_CASE("a record that places the points is refused unless it leaves them wher
     LasBytes las;
     if (behind) las.minor = 4;
     (behind ? las.evlrs : las.vlrs) = {{user, id, payload}};
-    return outcome_of_files({{"a.las", las.build()}}, {.ignore_crs = ignore});
+    ConvertOptions how;
+    how.ignore_crs = ignore;
+    return outcome_of_files({{"a.las", las.build()}}, how);
   };
   const auto ptx = [](double turn, double shift) {
     std::array<double, 34> numbers{};  // the matrix is the last 16 of them
