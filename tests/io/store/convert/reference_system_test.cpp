@@ -217,7 +217,11 @@ TEST_CASE("a record that places the points is refused unless it leaves them wher
                            bool ignore = false) {
     LasBytes las;
     if (behind) las.minor = 4;
-    (behind ? las.evlrs : las.vlrs) = {{user, id, payload}};
+    auto& records = behind ? las.evlrs : las.vlrs;
+    auto& record = records.emplace_back();
+    record.user = user;
+    record.id = id;
+    record.payload = payload;
     ConvertOptions how;
     how.ignore_crs = ignore;
     return outcome_of_files({{"a.las", las.build()}}, how);
