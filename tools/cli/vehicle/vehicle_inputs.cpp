@@ -1,11 +1,15 @@
 #include "cli/vehicle/vehicle_inputs.hpp"
 
-#include <fstream>
+#include <array>
+#include <cstddef>
+#include <span>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "io/files/file.hpp"
 #include "io/models/vehicle_file.hpp"
 
 namespace clearway::tool {
@@ -13,8 +17,14 @@ namespace clearway::tool {
 bool names_vehicle(const std::filesystem::path& file) {
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(file, unknown)) return false;
-  char first = 0;
-  return std::ifstream(file) >> first && first == '{';
+  const File input = File::open_regular(file);
+  std::array<char, 256> piece{};
+  while (const std::size_t bytes = input.read_some(std::as_writable_bytes(std::span(piece)))) {
+    const std::string_view text(piece.data(), bytes);
+    const std::size_t first = text.find_first_not_of(" \t\r\n\v\f");
+    if (first != std::string_view::npos) return text[first] == '{';
+  }
+  return false;
 }
 
 std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& file,
