@@ -494,10 +494,6 @@ std::uint64_t StoreReader::fingerprint() const {
   add(metadata().crs_wkt);
   add(std::string(to_string(metadata().unit)));
   add(metadata().options);
-  for (const SourceFile& source : metadata().sources) {
-    add(source.name);
-    add(std::array{source.bytes, source.xxh64});
-  }
   for (const Message& warning : metadata().warnings) {
     add(warning.code);
     add(warning.text);

@@ -1,6 +1,7 @@
 #include "cli/check/check_record.hpp"
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <system_error>
 #include <utility>
 
@@ -54,6 +55,22 @@ ordered_json contents_of(const std::filesystem::path& file) {
   return {{"bytes", contents.bytes}, {"xxh64", hash_text(contents.xxh64)}};
 }
 
+namespace {
+
+/// What identifies a store with the names of its scans, which pages show.
+ordered_json contents_of_store(const std::filesystem::path& file) {
+  const StoreReader store(file);
+  ColumnHashes sources;
+  for (const SourceFile& source : store.metadata().sources) {
+    sources.add(source.name);
+    sources.add(std::array{source.bytes, source.xxh64});
+  }
+  return {{"fingerprint", hash_text(store.fingerprint())},
+          {"sources", hash_text(sources.digest())}};
+}
+
+}  // namespace
+
 ordered_json contents_of_inputs(const CLI::App& step) {
   ordered_json inputs = ordered_json::object();
   for (const CLI::Option* option : step.get_options()) {
@@ -63,7 +80,7 @@ ordered_json contents_of_inputs(const CLI::App& step) {
       std::error_code unknown;
       if (names_box(file) || !std::filesystem::exists(file, unknown)) continue;
       if (name == "--env") {
-        inputs[name].push_back(hash_text(StoreReader(file).fingerprint()));
+        inputs[name].push_back(contents_of_store(file));
       } else if (names_vehicle(file)) {
         for (const std::filesystem::path& one : vehicle_inputs(file, {})) {
           inputs[name].push_back(contents_of(one));

@@ -22,7 +22,7 @@ inline constexpr const char* kRecordName = "check.json";
 nlohmann::ordered_json contents_of(const std::filesystem::path& file);
 
 /// What identifies the contents of all files that a command line names, but for its output: of a
-/// store its fingerprint, and of a vehicle its files. step: the command, parsed.
+/// store its fingerprint and sources, and of a vehicle its files. step: the command, parsed.
 nlohmann::ordered_json contents_of_inputs(const CLI::App& step);
 
 class CheckRecord {

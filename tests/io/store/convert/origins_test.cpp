@@ -90,7 +90,7 @@ TEST_CASE("a store without origins says nothing of them, and origins change its 
   convert_quietly(scan.options);
   const StoreReader without(scan.options.output);
   CHECK_FALSE(without.has_origins());
-  CHECK(bytes_of(scan.options.output).find("origin") == std::string::npos);
+  CHECK(bytes_of(scan.options.output).find("rest_on") == std::string::npos);
   std::vector<std::uint64_t> prints{without.fingerprint()}, hashes;
   for (const char* rows : {"0,1,2,3\n", "0,1,2,4\n", "0,1,2,4\n9,1,2,3\n", "0,1,2,4\n8,1,2,3\n"}) {
     scan.give(std::string("first,x,y,z\n") + rows);
