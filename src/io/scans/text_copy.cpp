@@ -49,13 +49,17 @@ void refuse_if_copied_as_text(const InputBuffer& input) {
 }
 
 void refuse_seven_bits(InputBuffer& input) {
-  // So many bytes other than zero in a row hold a greater one in any binary data.
+  // So many bytes other than zero, with so many values, hold a greater one in any binary data.
+  // Coordinates that are small whole numbers have only few values.
   constexpr std::size_t kWindow = std::size_t{1} << 16;
-  constexpr std::size_t kEnough = 4096;
+  constexpr std::size_t kEnough = 4096, kEnoughValues = 96;
   const auto bytes = input.peek(kWindow);
   const auto is_high = [](std::byte byte) { return byte > std::byte{0x7F}; };
   const auto zeros = static_cast<std::size_t>(std::ranges::count(bytes, std::byte{0}));
   if (bytes.size() - zeros < kEnough || std::ranges::any_of(bytes, is_high)) return;
+  std::array<bool, 128> found{};
+  for (const std::byte byte : bytes) found[std::to_integer<std::size_t>(byte)] = true;
+  if (static_cast<std::size_t>(std::ranges::count(found, true)) < kEnoughValues) return;
   refuse(input.name(),
          "has no byte above 127, so a program that takes it for text cut off the highest bits. "
          "Copy the original again as a binary file");
