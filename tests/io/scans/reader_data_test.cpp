@@ -81,7 +81,7 @@ TEST_CASE(
        {92095808.0, -1752414158.0, 1157661265.0}},
       {"simple1_3.las",
        999,
-       LengthUnit::kUnknown,
+       LengthUnit::kMetre,  // by the key of geodetic systems
        {-234935.841, 5800843.145, 265.094},
        {-235433.76, 5800946.08, 273.729}},
       {"simple1_4.las", 22600, LengthUnit::kDegrees, {1.0, 1.0, 100.0}, {226.0, 100.0, 185.0}},
