@@ -305,7 +305,8 @@ Json json_of_stations(const ReportFacts& facts) {
 Json json_of(const StretchShift& row) {
   return {{"conflict", row.conflict},
           {"shift", or_null(row.shift)},
-          {"least_distance", or_null(row.least_distance)}};
+          {"least_distance", or_null(row.least_distance)},
+          {"warned_of", row.warned_of}};
 }
 
 Json json_of(const ShiftTable& table) {
