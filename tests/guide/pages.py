@@ -48,6 +48,7 @@ SNIPPETS_ELSEWHERE = {
 SAMPLES = {
     ("README.md", "2 conflicts of 6,128"): "of the demo, tools/demo.sh",
     ("docs/guide/results.md", "conflict: 1,204"): "of a trajectory with names and times",
+    ("docs/guide/results.md", "conflict: 60 points"): "of a scan with classes",
 }
 
 # (page, beginning of a snippet): the file that the page tells the reader to write.
