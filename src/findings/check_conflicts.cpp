@@ -131,6 +131,17 @@ namespace {
 
 constexpr double kMostOfThePath = 0.5;
 
+/// Such as "0.02 to 0.1 m below" or "0.1 m below to 0.3 m above".
+std::string heights_text(double from, double to, const std::string& symbol) {
+  const auto text = [](double height) { return format_brief(std::abs(height)); };
+  const std::string unit = " " + symbol, above = unit + " above", below = unit + " below";
+  if (text(from) == text(to) && (from < 0) == (to < 0)) {
+    return text(from) + (from < 0 ? below : above);
+  }
+  if (to < 0) return text(to) + " to " + text(from) + below;
+  return text(from) + (from < 0 ? below : "") + " to " + text(to) + above;
+}
+
 }  // namespace
 
 double ground_height(LengthUnit unit) {
@@ -157,18 +168,18 @@ std::vector<Message> conflict_warnings(const Conflicts& conflicts, LengthUnit un
                {"path_length", conflicts.path_length}});
   if (!conflicts.longest_group_height_from) return {std::move(message)};
   const double from = *conflicts.longest_group_height_from, to = *conflicts.longest_group_height_to;
-  const std::string lowest = format_brief(from), highest = format_brief(to);
-  message.text += ", " + (lowest == highest ? lowest : lowest + " to " + highest) + " " + symbol +
-                  " above the lowest point of the model";
+  message.text += ", " + heights_text(from, to, symbol) + " the lowest point of the model";
   message.numbers.push_back({"height_from", from});
   message.numbers.push_back({"height_to", to});
   if (conflicts.longest_group_is == GroupPlace::kGround) {
-    message.text += " and mostly in its lowest " + format_brief(ground_height(unit)) + " " +
-                    symbol + ", as wheels do that stand on the ground";
+    if (to > 0) {
+      message.text += ", mostly below " + format_brief(ground_height(unit)) + " " + symbol;
+    }
+    message.text += ", as the ground is under wheels";
     message.numbers.push_back({"ground", 1});
   } else if (conflicts.longest_group_is == GroupPlace::kInside) {
     message.text +=
-        " and within it on all sides, as the vehicle does that carried the scanner, or a cable "
+        ", and within it on all sides, as the vehicle does that carried the scanner, or a cable "
         "along the path";
     message.numbers.push_back({"inside", 1});
   }

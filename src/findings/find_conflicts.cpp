@@ -426,7 +426,7 @@ class ConflictSearch {
   void place_longest(std::uint32_t group) {
     const double low = ground_height(unit_of(reader_.header()));
     double from = std::numeric_limits<double>::infinity(), to = -from;
-    std::uint64_t in_lowest = 0, left = 0, right = 0;
+    std::uint64_t in_lowest = 0, below = 0, left = 0, right = 0;
     bool is_inside = true;
     for (std::uint32_t cell = 0; cell < grid_->cells(); ++cell) {
       if (groups_.of_cell[cell] != group) continue;
@@ -442,6 +442,7 @@ class ConflictSearch {
         from = std::min(from, height);
         to = std::max(to, height);
         in_lowest += height <= low ? 1 : 0;
+        below += height < 0 ? 1 : 0;
         ++(there.y > box.centre().y ? left : right);
         is_inside = is_inside && there.y > box.lo.y && there.y < box.hi.y && there.z > box.lo.z &&
                     there.z < box.hi.z;
@@ -450,10 +451,12 @@ class ConflictSearch {
     if (!std::isfinite(from) || !std::isfinite(to)) return;
     out_.longest_group_height_from = from;
     out_.longest_group_height_to = to;
-    if (left == 0 || right == 0) return;
-    if (2 * in_lowest >= left + right) {
+    // Each wheel track may be a group of its own; a kerb on one side is higher than the wheels stand.
+    const std::uint64_t all = left + right;
+    const bool is_on_both_sides = left > 0 && right > 0;
+    if (2 * below >= all || (is_on_both_sides && 2 * in_lowest >= all)) {
       out_.longest_group_is = GroupPlace::kGround;
-    } else if (is_inside) {
+    } else if (is_on_both_sides && is_inside) {
       out_.longest_group_is = GroupPlace::kInside;
     }
   }

@@ -521,8 +521,9 @@ class ShiftSearch {
       ++found.row.searches;
       const SessionAnswer answer = session_.search(moved.at(shift), question());
       if (answer.collisions().size() == 0) {
-        if (answer.is_in_doubt()) {
-          if (doubts.empty()) doubts = answer.doubts();
+        const std::vector<std::string> in_doubt = doubts_at_shift(answer);
+        if (!in_doubt.empty()) {
+          if (doubts.empty()) doubts = in_doubt;
           continue;
         }
         if (!answer.warnings.empty()) found.row.warned_of = new_warnings(answer, moved, shift);
@@ -566,6 +567,21 @@ class ShiftSearch {
     return {codes.begin(), codes.end()};
   }
 
+  /// The codes of the warnings about a place that put the answer at a shift in doubt. What the run
+  /// was warned of along its whole path, such as ground that was removed on purpose, does not. Below
+  /// the ground is a place for what leaves points out, since else the ground would collide.
+  std::vector<std::string> doubts_at_shift(const Answer& answer) const {
+    std::vector<std::string> codes = answer.doubts();
+    const std::vector<std::string> known = run_.warned_of();
+    const bool leaves_out = asked_.ignores_points() || has_floor(query_);
+    std::erase_if(codes, [&](const std::string& code) {
+      const bool is_of_place = std::ranges::find(kOfPlace, code) != kOfPlace.end() ||
+                               (leaves_out && code == "below-ground");
+      return !is_of_place || std::ranges::binary_search(known, code);
+    });
+    return codes;
+  }
+
   /// The codes of place that the checks give at a shift and not without it. answer: that of the
   /// shift.
   std::vector<std::string> new_warnings(const SessionAnswer& answer, ShiftedQuery& moved,
@@ -607,7 +623,15 @@ class ShiftSearch {
       rank = std::max(rank, found.rank);
       for (const Vec3& point : found.obstacles) points.add(point);
     }
-    return find(row, rank, points.points()).row;
+    row = find(row, rank, points.points()).row;
+    if (row.shift || !row.warned_of.empty()) return row;
+    // What no shift frees without a doubt, no shift of the whole path does.
+    std::set<std::string> doubts;
+    for (const Found& found : conflicts) {
+      if (!found.row.shift) doubts.insert(found.row.warned_of.begin(), found.row.warned_of.end());
+    }
+    row.warned_of.assign(doubts.begin(), doubts.end());
+    return row;
   }
 
   QuestionOptions question() const {

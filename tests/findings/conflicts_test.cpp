@@ -77,9 +77,10 @@ TEST_CASE("a conflict along the whole path is told by its height") {
     const char* heights;
   };
   const Case cases[] = {
-      {"ground", -1400, 1400, -1200, 0, GroupPlace::kGround, ", -0.2 m above"},
+      {"ground", -1400, 1400, -1200, 0, GroupPlace::kGround, ", 0.2 m below"},
+      {"track of the left wheels", 500, 900, -1050, 0, GroupPlace::kGround, ", 0.05 m below"},
       {"rails", -700, 700, -950, 0, GroupPlace::kGround, ", 0.05 m above"},
-      {"ground and what stands on it", -1400, 1400, -1200, 1500, GroupPlace::kGround, "to 1.3 m"},
+      {"ground and what stands on it", -1400, 1400, -1200, 1500, GroupPlace::kGround, "0.2 m below to 1.3 m above"},
       {"roof of the scanner's vehicle", -500, 500, 900, 0, GroupPlace::kInside, ", 1.9 m above"},
       {"bonnet", -600, 300, -200, 40, GroupPlace::kInside, "0.8 to 0.84 m above"},
       {"mast", -50, 50, 0, 500, GroupPlace::kInside, "1 to 1.5 m above"},
@@ -107,7 +108,7 @@ TEST_CASE("a conflict along the whole path is told by its height") {
     check_says(text, "spans 59 m of 60 m of path");
     check_says(text, of.heights);
     const auto says = [&](const char* words) { return text.find(words) != std::string::npos; };
-    CHECK(says("wheels") == (of.is == GroupPlace::kGround));
+    CHECK(says("under wheels") == (of.is == GroupPlace::kGround));
     CHECK(says("carried the scanner") == (of.is == GroupPlace::kInside));
   }
 }

@@ -475,7 +475,9 @@ TEST_CASE("the verdicts of the rows together are that of the result, with a budg
     Random random(seed);
     std::vector<Vec3> places{{5, 3, 0}};
     for (int i = -4; i <= 48; ++i) {  // ground, without which a hole would be in doubt
-      for (int k = -4; k <= 4; ++k) places.push_back({0.5 * i, 0.5 * k, -2});
+      for (int k = -4; k <= 4; ++k) {
+        places.push_back({0.5 * i + 0.007 * (k % 3), 0.5 * k + 0.007 * (i % 3), -2});
+      }
     }
     for (int i = 0; i < 3; ++i) {
       const auto more = post(uniform(random, 2, 18), 0.5 + uniform(random, 0, 0.25),

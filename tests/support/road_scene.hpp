@@ -52,14 +52,17 @@ struct RoadScan {
     points.resize(kept);
     classes.resize(kept);
   }
-  /// Writes the scan with coordinates from `offset`, and converts it.
+  /// Writes the scan with coordinates from `offset`, each wrong by up to 3 mm as those of a scanner,
+  /// and converts it.
   void convert_to(const std::filesystem::path& store,
                   const std::array<double, 3>& offset = {0, 0, 0}) const {
     std::vector<Quantum> quanta;
+    Random random(1);
     for (const Vec3& p : points) {
       Quantum q{};
       for (std::size_t k = 0; k < 3; ++k) {
-        q[k] = static_cast<std::int32_t>(std::lround(1000 * (p[static_cast<int>(k)] - offset[k])));
+        const double at = p[static_cast<int>(k)] + uniform(random, -0.003, 0.003);
+        q[k] = static_cast<std::int32_t>(std::lround(1000 * (at - offset[k])));
       }
       quanta.push_back(q);
     }

@@ -349,8 +349,10 @@ class PartMerge {
       const bool nearer = rows.squared[i] < best.squared[i] ||
                           (rows.squared[i] == best.squared[i] && rows.source[i] < best.source[i]);
       if (!nearer) continue;
-      for_each_column<ProfileRows>(
-          [&](const auto& column) { (best.*column.values)[i] = (rows.*column.values)[i]; });
+      for_each_column<ProfileRows>([&](const auto& column) {
+        const auto& values = rows.*column.values;
+        if (!values.empty()) (best.*column.values)[i] = values[i];
+      });
     }
   }
 

@@ -225,8 +225,8 @@ TEST_CASE("a radius in another unit, and gaps that let things through, are warne
     return codes_of(asked.ask());
   };
   CHECK(codes([](Asked& asked) { asked.radius = "100"; }) == "radius-size");
-  check_says(codes([](Asked& asked) { asked.radius = "0.005"; }), "fine-radius");
-  check_says(codes([](Asked& asked) { asked.radius = "0.0005"; }), "coarse-digits");
+  check_says(codes([](Asked& asked) { asked.radius = "0.0005"; }), "fine-radius");
+  check_says(codes([](Asked& asked) { asked.radius = "0.00005"; }), "coarse-digits");
   check_says(codes([](Asked& asked) { thin(asked.model, 200); }), "model-spacing");
   const auto sparse = [](Asked& asked) { thin(asked.poses, 20); };
   CHECK(codes(sparse) == "large-steps");
@@ -372,13 +372,13 @@ TEST_CASE("warnings are in the JSON, and the last line names them") {
   const Outcome silent = run("10cm");
   CHECK((json_of(silent)["warnings"].empty() && silent.err.find("warning") == std::string::npos));
   check_says(silent.err, "info: model 4.5 x 1.9 x 1.5 m, path 80 m long");
-  const Outcome doubtful = run("5mm");
+  const Outcome doubtful = run("0.5mm");
   const auto warnings = json_of(doubtful)["warnings"];
   const auto fine = std::ranges::find_if(
       warnings, [](const auto& warning) { return warning["code"] == "fine-radius"; });
   REQUIRE(fine != warnings.end());
-  CHECK((*fine)["numbers"]["radius"] == 0.005);
-  CHECK((*fine)["message"].get<std::string>().starts_with("the radius is 0.005 m"));
+  CHECK((*fine)["numbers"]["radius"] == 0.0005);
+  CHECK((*fine)["message"].get<std::string>().starts_with("the radius is 0.0005 m"));
   const std::string last = doubtful.err.substr(doubtful.err.rfind("info: "));
   check_says(last, "; see the ... warnings above");
 }

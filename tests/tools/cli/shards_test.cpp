@@ -63,7 +63,7 @@ TEST_CASE("whether a point collides is asked of all parts") {
 
 TEST_CASE("a merge has the warnings of its runs") {
   const Street street;
-  const std::string query = "--radius 0.001 ";
+  const std::string query = "--radius 0.006 ";
   const Outcome whole = street.search(query + "-o whole.h5 --json");
   const json run = json_of(whole);
   REQUIRE(!run["warnings"].empty());

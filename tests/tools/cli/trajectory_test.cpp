@@ -196,8 +196,10 @@ TEST_CASE("resample takes the meaning of ft from the store") {
   const TrajectoryOptions in_feet{.allow_non_rigid = true,
                                   .environment_unit = kMetresPerUsSurveyFoot};
   CHECK(has_in_order(read_trajectory(files.folder / "feet.txt", in_feet), files.poses));
-  check_says(run_program(files.folder, "convert --resume scan.xyz -o s.h5").err,
+  check_says(run_program(files.folder, "convert --unit us-ft --resume scan.xyz -o s.h5").err,
              "is the store of these inputs already, with coordinates in ");
+  check_refused(run_program(files.folder, "convert --resume scan.xyz -o s.h5"), 2,
+                "its unit is 0.3048006096012192 m, expected none");
 }
 
 TEST_CASE("resample and thin keep stations, and put those of new poses between them") {

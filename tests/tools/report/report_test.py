@@ -604,7 +604,7 @@ class ReportTest(PageChecks, unittest.TestCase):
         self.assertLessEqual(facts["page"]["environment_points"], 200000)
         page = self.open(path)
         self.check_words(page, facts)
-        self.assertIn("--floor", page.run("byId('verdict').innerText"))
+        self.assertIn("as the ground is under wheels", page.run("byId('verdict').innerText"))
         self.check_quiet(page)
 
 

@@ -61,7 +61,8 @@ std::string value_text(const std::optional<double>& value) {
   return value ? format_number(*value) : "none";
 }
 std::string value_text(const FileUnit& unit) {
-  return format_number(unit.metres()) + (unit.is_any_foot() ? " (any foot)" : "");
+  if (unit.is_any_foot()) return "any foot";
+  return unit.metres() > 0 ? format_number(unit.metres()) + " m" : "none";
 }
 std::string value_text(const Vec3& v) {
   return format_number(v.x) + " " + format_number(v.y) + " " + format_number(v.z);

@@ -80,8 +80,11 @@ class Fit {
     return true;
   }
 
-  /// Whether the values are at multiples of the step, which becomes that of the line through them.
+  /// Whether the values are at more than a few multiples of the step, which becomes that of the line
+  /// through them.
   bool holds() {
+    std::size_t different = 0;
+    double last = std::numeric_limits<double>::quiet_NaN();
     double off = 0, points = 0, multiples = 0, squares = 0, products = 0, sum = 0;
     for (const AxisValue& value : values_) {
       const double distance = value.at - first_;
@@ -90,6 +93,8 @@ class Fit {
         off += value.points;
         continue;
       }
+      different += multiple == last ? 0 : 1;
+      last = multiple;
       points += value.points;
       multiples += value.points * multiple;
       squares += value.points * multiple * multiple;
@@ -101,7 +106,7 @@ class Fit {
       step_ = (points * products - multiples * sum) / spread;
       first_ += (sum - step_ * multiples) / points;
     }
-    return off <= most_off_;
+    return different > kFewValues && off <= most_off_;
   }
 
   const std::vector<AxisValue>& values_;

@@ -308,7 +308,7 @@ TEST_CASE("compare --conflicts names every other question, and calls none of the
   differs("surface", "model");
   const Outcome allowed = street.compare("a", "box", "--allow-other-question");
   check_outcome(allowed, 6);  // the box holds all points
-  check_says(allowed.out, "warned of all-ignored ... which was allowed");
+  check_says(allowed.out, "the question is in doubt (all-ignored) ... which was allowed");
   check_outcome(street.compare("a", "ways", "--allow-other-question"), 0);
   check_outcome(street.compare("a", "a"), 6);
 }
@@ -394,11 +394,11 @@ TEST_CASE("compare --conflicts calls nothing good where b could not find anythin
   const Outcome undecided = street.compare("a", "off");
   check_outcome(undecided, 6, kAnything,
                 "no new conflicts; b has not searched 1 place where a has a conflict; b is "
-                "undecided, because its run warned of out-of-reach");
+                "undecided, because the question is in doubt (out-of-reach)");
   check_json(json_of(street.compare("a", "off", "--json")),
              R"({"holds": false, "b": {"verdict": "undecided", "doubts": ["out-of-reach"]}})");
   check_outcome(street.compare("off", "a"), 1, kAnything,
-                "; a is undecided, because its run warned of out-of-reach");
+                "; a is undecided, because the question is in doubt (out-of-reach)");
   check_says(street.compare("a", "off", "-o u.html").out, "undecided");
   check_says(street.bytes("u.html"), "b is undecided");
 }

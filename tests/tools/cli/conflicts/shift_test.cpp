@@ -119,13 +119,17 @@ TEST_CASE("where the question is in doubt, no shift is known to free anything") 
 }
 
 TEST_CASE("a path on which nothing collides needs no shift") {
-  lane().succeed(
-      "run --model-as solid --radius 0.001 --first-pose --ignore-box=0,-9,0,20,9,9 --force -o "
-      "free.h5" +
-      lane().files());
-  const json free = lane().shifts("", "free.h5");
-  check_json(free, R"({"path": {"shift": 0, "side": null}, "conflicts": []})");
-  check_says(lane().shift("", "free.h5").out, "the whole path: it is free");
+  std::string scan;
+  for (int i = 0; i < 120; ++i) {
+    scan += std::to_string(0.1 * i) + " 2 " + std::to_string(0.1 * (i % 7)) + "\n";
+  }
+  lane().put("beside.xyz", scan);
+  lane().succeed("convert beside.xyz --force -o beside.h5");
+  const std::string files = " --env beside.h5 --model box.off --trajectory path.txt";
+  lane().succeed("run --model-as solid --radius 0.001 --first-pose --force -o free.h5" + files);
+  check_json(lane().answer("shift free.h5 --json" + files),
+             R"({"path": {"shift": 0, "side": null}, "conflicts": []})");
+  check_says(lane().run("shift free.h5" + files).out, "the whole path: it is free");
 }
 
 TEST_CASE("points that the run ignored stay ignored, and an error budget keeps its distance") {
