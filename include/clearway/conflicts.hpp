@@ -172,9 +172,9 @@ struct SmallGroup {
 };
 
 /// What a group that spans most of the path probably is, by where it lies. kGround: half of it or
-/// more is below the model, or in its lowest 0.5 m, left and right of the middle. kInside: all of it lies within the
-/// width and height of the model, left and right of the middle, so that nothing reaches in from
-/// outside.
+/// more is below the model, or in its lowest 0.5 m, left and right of the middle. kInside: all of
+/// it lies within the width and height of the model, left and right of the middle, so that nothing
+/// reaches in from outside.
 enum class GroupPlace { kOther, kGround, kInside };
 
 /// The name of a place, "other", "ground" or "inside".

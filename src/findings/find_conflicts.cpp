@@ -451,7 +451,8 @@ class ConflictSearch {
     if (!std::isfinite(from) || !std::isfinite(to)) return;
     out_.longest_group_height_from = from;
     out_.longest_group_height_to = to;
-    // Each wheel track may be a group of its own; a kerb on one side is higher than the wheels stand.
+    // Each wheel track may be a group of its own; a kerb on one side is higher than the wheels
+    // stand.
     const std::uint64_t all = left + right;
     const bool is_on_both_sides = left > 0 && right > 0;
     if (2 * below >= all || (is_on_both_sides && 2 * in_lowest >= all)) {

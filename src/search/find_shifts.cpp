@@ -568,8 +568,8 @@ class ShiftSearch {
   }
 
   /// The codes of the warnings about a place that put the answer at a shift in doubt. What the run
-  /// was warned of along its whole path, such as ground that was removed on purpose, does not. Below
-  /// the ground is a place for what leaves points out, since else the ground would collide.
+  /// was warned of along its whole path, such as ground that was removed on purpose, does not.
+  /// Below the ground is a place for what leaves points out, since else the ground would collide.
   std::vector<std::string> doubts_at_shift(const Answer& answer) const {
     std::vector<std::string> codes = answer.doubts();
     const std::vector<std::string> known = run_.warned_of();

@@ -180,7 +180,8 @@ TEST_CASE("a part that was interrupted and is resumed holds the warnings") {
   CHECK(warnings[0].code == "dusty");
   CHECK(warnings[0].parts == 1);
 
-  // With other warnings about the same inputs it stays the same part, and is made again to say them.
+  // With other warnings about the same inputs it stays the same part, and is made again to say
+  // them.
   CHECK(search(store, shards.scene.query, output, options).was_finished);
   options.input_warnings = {kOfOne};
   CHECK_FALSE(search(store, shards.scene.query, output, options).was_finished);

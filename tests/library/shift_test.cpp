@@ -140,8 +140,8 @@ struct Seen {
   }
 };
 
-/// Compares a shift with that of brute force, which knows no warnings: if they put that one in doubt,
-/// a later shift is taken, or none.
+/// Compares a shift with that of brute force, which knows no warnings: if they put that one in
+/// doubt, a later shift is taken, or none.
 void check_shift(const StretchShift& row, std::optional<double> least,
                  const std::vector<double>& shifts, Seen& seen) {
   if (row.shift == least) return;

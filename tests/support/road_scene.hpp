@@ -52,8 +52,8 @@ struct RoadScan {
     points.resize(kept);
     classes.resize(kept);
   }
-  /// Writes the scan with coordinates from `offset`, each wrong by up to 3 mm as those of a scanner,
-  /// and converts it.
+  /// Writes the scan with coordinates from `offset`, each wrong by up to 3 mm as those of a
+  /// scanner, and converts it.
   void convert_to(const std::filesystem::path& store,
                   const std::array<double, 3>& offset = {0, 0, 0}) const {
     std::vector<Quantum> quanta;

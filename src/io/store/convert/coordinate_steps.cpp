@@ -80,8 +80,8 @@ class Fit {
     return true;
   }
 
-  /// Whether the values are at more than a few multiples of the step, which becomes that of the line
-  /// through them.
+  /// Whether the values are at more than a few multiples of the step, which becomes that of the
+  /// line through them.
   bool holds() {
     std::size_t different = 0;
     double last = std::numeric_limits<double>::quiet_NaN();
