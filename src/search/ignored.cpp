@@ -267,7 +267,7 @@ void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog
          format_count(high) + of_ignored + " would collide more than " +
              length_text(ground_height(unit), unit) +
              " above the model's lowest point, where no ground is: " +
-             "the model hits what was ignored. Ignore the ground alone",
+             "the model hits what was ignored. The classes or boxes hold more than the ground",
          static_cast<double>(high));
   }
 }

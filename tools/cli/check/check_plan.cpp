@@ -206,8 +206,10 @@ std::filesystem::path CheckPlan::environment() const {
 Words CheckPlan::convert(bool replacing) const {
   Words words{"convert"};
   for (const std::filesystem::path& input : scans_) words.push_back(input.string());
-  return words + Words{"-o", file(kStoreName).string()} + corridor() +
-         given<ConvertCommand>(check_, kConvertOptions) + again(replacing);
+  Words options = given<ConvertCommand>(check_, kConvertOptions);
+  // Before its width is known, the words have no corridor whose bounds could be trusted.
+  if (is_given("--near") && near_metres_ == 0) std::erase(options, "--trust-bounds");
+  return words + Words{"-o", file(kStoreName).string()} + corridor() + options + again(replacing);
 }
 
 /// The words of a corridor around the path of the question, with how this is read.

@@ -274,6 +274,8 @@ class Finding(Site):
         self.assertIn("--near trajectory.txt --within ", near.stdout)
         self.assertEqual(self.pasted_elsewhere(printed_commands(near.stdout), "near"),
                          bytes_of(self.folder / "near"))
+        trusting = self.check(f"scans {QUESTION} --near --trust-bounds -o trusting")
+        self.assertIn("--trust-bounds", trusting.stdout)
 
     def test_a_corridor_that_proves_too_narrow_is_known_the_next_time(self):
         self.bend(self.folder / "corners.txt", [(0, 0), (30, 0), (30, 30), (60, 30), (60, 60)])
