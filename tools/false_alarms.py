@@ -15,6 +15,7 @@ Example: tools/false_alarms.py build/release/tools/clearway --none below-ground,
 
 import argparse
 import collections
+import csv
 import json
 import subprocess
 import sys
@@ -113,9 +114,11 @@ class Trial:
             with tempfile.TemporaryDirectory() as folder:
                 info = json.loads(self.call(folder, f"trajectory info {file} --json"))
                 self.count(f"{file.name}, info", json.dumps(info))
-                self.call(folder, f"trajectory follow {file} --at 0 -o path.txt")
-                poses = np.loadtxt(Path(folder) / "path.txt").reshape(-1, 4, 4)
-                positions = poses[::10, :3, 3]
+                self.call(folder, f"trajectory follow {file} --at 0 -o path.csv")
+                with open(Path(folder) / "path.csv", encoding="utf-8", newline="") as table:
+                    columns = [name.split()[0] for name in next(csv.reader(table))]
+                    positions = np.loadtxt(table, delimiter=",",
+                                           usecols=[columns.index(axis) for axis in "xyz"])[::10]
                 around = np.random.default_rng(1).uniform(-4, 4, (len(positions), 50, 3))
                 np.savetxt(Path(folder) / "scan.xyz",
                            (positions[:, None] + around).reshape(-1, 3), "%.3f")
