@@ -91,7 +91,9 @@ struct SearchReport : Answer {
   std::string device_name = "the CPU";     ///< name of the device for the user
   std::optional<double> shard_share;       ///< a shard's estimated work, relative to the mean
   std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
-  std::uint64_t cells_total = 0, cells_read = 0, bytes_read = 0;
+  std::uint64_t cells_total = 0;
+  std::uint64_t cells_read = 0;  ///< cells whose points were searched
+  BytesRead bytes_read;          ///< by all parts of the search, until the result was written
   std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
   /// Pages that were run, and the largest size that one may have
   std::uint64_t pages = 0, page_bytes = 0;

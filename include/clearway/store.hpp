@@ -13,6 +13,11 @@ namespace clearway {
 
 class StoreReader;
 
+/// Bytes of a store's points that were read, by column. What is read again counts again.
+struct BytesRead {
+  std::uint64_t coordinates = 0, sources = 0, classes = 0, origins = 0;
+};
+
 /// An environment that convert() made. Its index is in memory, while its points stay in the file.
 class Store {
  public:

@@ -57,6 +57,16 @@ void add_seconds(py::module_& module) {
                     "Estimated seconds on a GPU, its start included.");
 }
 
+void add_bytes_read(py::module_& module) {
+  py::class_<BytesRead>(module, "BytesRead",
+                        "How many bytes of a store's points were read, by column. What is read "
+                        "again counts again.")
+      .def_readonly("coordinates", &BytesRead::coordinates, "Bytes of coordinates.")
+      .def_readonly("sources", &BytesRead::sources, "Bytes of source indices.")
+      .def_readonly("classes", &BytesRead::classes, "Bytes of classes.")
+      .def_readonly("origins", &BytesRead::origins, "Bytes of the origins of beams.");
+}
+
 py::list reasons_of(const Answer& answer) {
   py::list list;
   for (const Reason reason : answer.reasons()) list.append(text(name_of(reason)));
@@ -239,7 +249,8 @@ void add_work_of(py::class_<Report, Answer>& report) {
       .def_readonly("cells_total", &Report::cells_total, "How many cells the store has.")
       .def_readonly("cells_read", &Report::cells_read,
                     "How many cells were read; the model comes near no other.")
-      .def_readonly("bytes_read", &Report::bytes_read, "How many bytes of the store were read.")
+      .def_readonly("bytes_read", &Report::bytes_read,
+                    "How many bytes of the store's points were read: a BytesRead.")
       .def_readonly("resumed_cells", &Report::resumed_cells,
                     "How many cells an interrupted search had finished before.")
       .def_readonly("resumed_poses", &Report::resumed_poses,
@@ -262,6 +273,7 @@ void add_work_of(py::class_<Report, Answer>& report) {
 
 void add_reports(py::module_& module) {
   add_seconds(module);
+  add_bytes_read(module);
   add_answer(module);
   py::class_<Report, Answer> report(module, "SearchReport",
                                     "What a search found, and how it searched.");

@@ -61,6 +61,12 @@ class StageOf final : public Progress {
   std::string_view name_;
 };
 
+/// What was read after `before`.
+BytesRead since(const BytesRead& before, const BytesRead& now) {
+  return {now.coordinates - before.coordinates, now.sources - before.sources,
+          now.classes - before.classes, now.origins - before.origins};
+}
+
 /// The file that a result goes to, and the journal beside it.
 struct OutputFile {
   OutputFile(const std::filesystem::path& path, const SearchOptions& options, MessageLog& log)
@@ -557,7 +563,7 @@ class Search {
   /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
   void find_unseen(Found& found) {
-    touched_ = store_.touched();
+    cells_read_ = store_.cells_touched();
     further_.options = options_;
     further_.options.engine = Engine::kSweep;
     further_.options.end_gpus = false;  // following the beams does
@@ -672,10 +678,9 @@ class Search {
       throw ResourceError(error.what(), Remedy::kResume);
     }
     file_->journal.remove_after_publication();
-    const StoreReader::Touched touched = touched_.value_or(store_.touched());
-    report_.cells_read = touched.cells;
+    report_.cells_read = cells_read_.value_or(store_.cells_touched());
     report_.ignored_looked_at = found.result.ignored_points;
-    report_.bytes_read = touched.bytes;
+    report_.bytes_read = since(bytes_before_, store_.bytes_read());
     report_.seconds.write = write.seconds();
   }
 
@@ -716,8 +721,10 @@ class Search {
   std::optional<ShardCells> shard_;
   /// The points that collide without floors, where depths need them.
   std::optional<HitSet> without_floors_;
-  /// What the searches for points have read, set before beams are followed.
-  std::optional<StoreReader::Touched> touched_;
+  /// The cells that the searches for points have read, set before beams are followed.
+  std::optional<std::uint64_t> cells_read_;
+  /// What earlier searches of the same store have read
+  const BytesRead bytes_before_ = store_.bytes_read();
   /// The query and the options of a further pass, which outlive its engines.
   struct Further {
     Query query;

@@ -159,12 +159,10 @@ class WitnessSearch {
   }
 
   SectionWitness witness_of(const Found& found) const {
-    const auto chunks = store_.coordinates(found.cell);
     SectionWitness witness;
     witness.source = found.source;
-    witness.xyz = position(store_.quantisation(), chunks[0][found.index], chunks[1][found.index],
-                           chunks[2][found.index]);
-    if (store_.has_classes()) witness.point_class = store_.classes(found.cell)[found.index];
+    witness.xyz = store_.position_of(found.cell, found.index);
+    if (store_.has_classes()) witness.point_class = store_.class_of(found.cell, found.index);
     return witness;
   }
 

@@ -167,17 +167,6 @@ namespace {
 /// Number of poses that are written at a time.
 constexpr std::uint64_t kPoses = 1 << 14;
 
-Vec3 position_of(const StoreReader& store, std::uint64_t entry) {
-  const auto q = store.coordinates(static_cast<std::uint32_t>(entry / store.cell_entries()));
-  const auto i = static_cast<std::uint32_t>(entry % store.cell_entries());
-  return position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
-}
-
-std::uint8_t class_of(const StoreReader& store, std::uint64_t entry) {
-  const auto cell = static_cast<std::uint32_t>(entry / store.cell_entries());
-  return store.classes(cell)[static_cast<std::uint32_t>(entry % store.cell_entries())];
-}
-
 /// The classes of a cell's points by their index in it; 0 where the store has none.
 auto classes_of(const StoreReader& store, std::uint32_t cell) {
   std::optional<PackedChunk<std::uint8_t>> classes;
@@ -202,12 +191,14 @@ void for_profile(const StoreReader& store, const ProfileSet& profile,
     clear_rows(rows);
     for (std::uint64_t pose = first; pose < end; ++pose) {
       const ProfilePoint& point = profile.at(pose);
+      const auto cell = static_cast<std::uint32_t>(point.entry / store.cell_entries());
+      const auto index = static_cast<std::uint32_t>(point.entry % store.cell_entries());
       rows.distance.push_back(signed_root(point.squared));
       rows.source.push_back(point.source);
-      rows.xyz.push_back(point.found() ? position_of(store, point.entry)
+      rows.xyz.push_back(point.found() ? store.position_of(cell, index)
                                        : Vec3{kNowhere, kNowhere, kNowhere});
       if (store.has_classes()) {
-        rows.point_class.push_back(point.found() ? class_of(store, point.entry) : 0);
+        rows.point_class.push_back(point.found() ? store.class_of(cell, index) : 0);
       }
       rows.chainage.push_back(chainage[pose]);
       if (is_part) rows.squared.push_back(point.squared);

@@ -227,7 +227,10 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   out["searches"] = known(searched, report.searches);
   out["cells_total"] = report.cells_total;
   out["cells_read"] = report.cells_read;
-  out["bytes_read"] = report.bytes_read;
+  out["bytes_read"] = {{"coordinates", report.bytes_read.coordinates},
+                       {"sources", report.bytes_read.sources},
+                       {"classes", report.bytes_read.classes},
+                       {"origins", report.bytes_read.origins}};
   out["resumed_cells"] = known(searched, report.resumed_cells);
   out["resumed_poses"] = known(searched, report.resumed_poses);
   out["pages"] = known(searched, report.pages);

@@ -381,26 +381,34 @@ PackedChunk<Number> StoreReader::chunk(std::uint32_t cell, const char* dataset,
   }
 }
 
-std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t cell) const {
+std::array<PackedChunk<std::int32_t>, 3> StoreReader::mapped_coordinates(std::uint32_t cell) const {
   std::array<PackedChunk<std::int32_t>, 3> chunks;
   for (int axis = 0; axis < 3; ++axis) {
     chunks[static_cast<std::size_t>(axis)] =
         chunk<std::int32_t>(cell, kPointDatasets[axis], checked_chunk(cell, axis));
   }
+  return chunks;
+}
+
+std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t cell) const {
+  const auto chunks = mapped_coordinates(cell);
   std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
+  handed_out_.coordinates.add(packed_bytes(cell));
   return chunks;
 }
 
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) const {
-  std::array<PackedChunk<std::int32_t>, 3> chunks;
-  for (int axis = 0; axis < 3; ++axis) {
-    chunks[static_cast<std::size_t>(axis)] =
-        chunk<std::int32_t>(cell, kPointDatasets[axis], checked_chunk(cell, axis));
-  }
-  return chunks;
+  handed_out_.coordinates.add(packed_bytes(cell));
+  return mapped_coordinates(cell);
 }
 
-PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
+Vec3 StoreReader::position_of(std::uint32_t cell, std::uint32_t index) const {
+  const auto q = mapped_coordinates(cell);
+  handed_out_.coordinates.add(3 * sizeof(std::int32_t));
+  return position(quantisation(), q[0][index], q[1][index], q[2][index]);
+}
+
+PackedChunk<std::uint64_t> StoreReader::mapped_sources(std::uint32_t cell) const {
   const std::atomic_ref checked(sources_checked_[cell]);
   if (checked.load(std::memory_order_acquire) == 0) {
     checked_chunk(cell, 3);
@@ -411,8 +419,14 @@ PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
   return chunk<std::uint64_t>(cell, kPointDatasets[3], bytes);
 }
 
+PackedChunk<std::uint64_t> StoreReader::sources(std::uint32_t cell) const {
+  handed_out_.sources.add(index_.cells.bytes[4 * std::size_t{cell} + 3]);
+  return mapped_sources(cell);
+}
+
 std::uint64_t StoreReader::source_of(std::uint32_t cell, std::uint32_t index) const {
-  return sources(cell)[index];
+  handed_out_.sources.add(sizeof(std::uint64_t));
+  return mapped_sources(cell)[index];
 }
 
 /// The packed values of a cell in a column, checked against their hash at the first call for it.
@@ -433,10 +447,17 @@ PackedChunk<Number> StoreReader::column_chunk(const PointColumn& column, const C
 }
 
 PackedChunk<std::uint8_t> StoreReader::classes(std::uint32_t cell) const {
+  handed_out_.classes.add(index_.classes.bytes[cell]);
   return column_chunk<std::uint8_t>(kClassColumn, index_.classes, classes_checked_, cell);
 }
 
+std::uint8_t StoreReader::class_of(std::uint32_t cell, std::uint32_t index) const {
+  handed_out_.classes.add(1);
+  return column_chunk<std::uint8_t>(kClassColumn, index_.classes, classes_checked_, cell)[index];
+}
+
 PackedChunk<std::uint32_t> StoreReader::origins(std::uint32_t cell) const {
+  handed_out_.origins.add(index_.origins.bytes[cell]);
   return column_chunk<std::uint32_t>(kOriginColumn, index_.origins, origins_checked_, cell);
 }
 
@@ -467,6 +488,7 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::read_packed(std::uint32_t 
     chunks[static_cast<std::size_t>(axis)] = chunk<std::int32_t>(cell, kPointDatasets[axis], part);
   }
   was_read.store(1, std::memory_order_relaxed);
+  handed_out_.coordinates.add(packed_bytes(cell));
   return chunks;
 }
 
@@ -523,17 +545,20 @@ void StoreReader::check_read() const {
   refuse(name(), "the file shrank or could not be read while it was in use");
 }
 
-StoreReader::Touched StoreReader::touched() const {
-  Touched touched;
+std::uint64_t StoreReader::cells_touched() const {
+  std::uint64_t cells = 0;
   const auto is_set = [](std::uint8_t& flag) {
     return std::atomic_ref(flag).load(std::memory_order_relaxed) != 0;
   };
   for (std::size_t cell = 0; cell < checked_.size(); ++cell) {
-    if (!is_set(checked_[cell]) && !is_set(read_[cell])) continue;
-    ++touched.cells;
-    touched.bytes += packed_bytes(static_cast<std::uint32_t>(cell));
+    cells += is_set(checked_[cell]) || is_set(read_[cell]);
   }
-  return touched;
+  return cells;
+}
+
+BytesRead StoreReader::bytes_read() const {
+  return {handed_out_.coordinates.bytes, handed_out_.sources.bytes, handed_out_.classes.bytes,
+          handed_out_.origins.bytes};
 }
 
 Box StoreReader::bounds() const {

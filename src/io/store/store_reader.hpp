@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
@@ -8,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "clearway/store.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "io/files/mapped_file.hpp"
 #include "io/store/point_columns.hpp"
@@ -82,13 +84,17 @@ class StoreReader final : public PackedCloud {
   std::optional<std::array<PackedChunk<std::int32_t>, 3>> in_place(
       std::uint32_t cell) const override;
 
-  /// Cells whose coordinates were requested or read since the store was opened, and their packed
-  /// bytes.
-  struct Touched {
-    std::uint64_t cells = 0;
-    std::uint64_t bytes = 0;
-  };
-  Touched touched() const;
+  /// The position of a point by its index in its cell, without the rest of the cell.
+  Vec3 position_of(std::uint32_t cell, std::uint32_t index) const;
+  /// The class of a point by its index in its cell. Only where has_classes().
+  std::uint8_t class_of(std::uint32_t cell, std::uint32_t index) const;
+
+  /// Number of cells whose coordinates were requested or read since the store was opened, except by
+  /// peek().
+  std::uint64_t cells_touched() const;
+  /// Bytes that were handed out since the store was opened, by peek() too: the packed bytes of whole
+  /// cells, and of single points the values.
+  BytesRead bytes_read() const;
 
   Box bounds() const override;
   /// Found at the first call.
@@ -116,6 +122,8 @@ class StoreReader final : public PackedCloud {
   template <typename Number>
   PackedChunk<Number> column_chunk(const PointColumn& column, const ColumnIndex& index,
                                    std::vector<std::uint8_t>& checked, std::uint32_t cell) const;
+  std::array<PackedChunk<std::int32_t>, 3> mapped_coordinates(std::uint32_t cell) const;
+  PackedChunk<std::uint64_t> mapped_sources(std::uint32_t cell) const;
   [[noreturn]] void refuse_damaged(std::uint32_t cell, const char* dataset,
                                    std::uint64_t byte) const;
 
@@ -136,6 +144,15 @@ class StoreReader final : public PackedCloud {
   mutable std::vector<std::uint8_t> classes_checked_;
   /// Per cell: 1 once the hash of its origins in the map was found right; empty without origins.
   mutable std::vector<std::uint8_t> origins_checked_;
+
+  /// The bytes of one column that were handed out.
+  struct Counter {
+    std::atomic<std::uint64_t> bytes = 0;
+    void add(std::uint64_t more) { bytes.fetch_add(more, std::memory_order_relaxed); }
+  };
+  struct {
+    Counter coordinates, sources, classes, origins;
+  } mutable handed_out_;
 };
 
 }  // namespace clearway

@@ -25,6 +25,7 @@ from ._clearway import (
     Answer,
     Body,
     Box,
+    BytesRead,
     Clearances,
     Collisions,
     Conflict,

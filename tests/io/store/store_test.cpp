@@ -220,17 +220,25 @@ TEST_CASE("the fingerprint tells stores apart, not names") {
   CHECK(StoreReader(a.path).fingerprint() != StoreReader(other.path).fingerprint());
 }
 
-TEST_CASE("a store knows which cells were touched") {
+TEST_CASE("a store counts the cells that were touched, and every byte that it hands out") {
   const ReadStore small;
   const StoreReader store(small.path);
-  check_equal(store.touched().cells, 0);
+  check_equal(store.cells_touched(), 0);
   store.coordinates(3);
   store.coordinates(3);
   store.coordinates(0);
-  check_equal(store.touched().cells, 2);
+  store.peek(1);
+  store.position_of(2, 5);
+  check_equal(store.cells_touched(), 2);
+  CHECK(store.bytes_read().coordinates == 2 * store.packed_bytes(3) + store.packed_bytes(0) +
+                                              store.packed_bytes(1) + 3 * sizeof(std::int32_t));
+  check_equal(store.bytes_read().sources, 0);
   const auto& bytes = store.index().bytes;
-  CHECK(store.touched().bytes ==
-        bytes[0] + bytes[1] + bytes[2] + bytes[12] + bytes[13] + bytes[14]);
+  store.sources(3);
+  store.sources(3);
+  store.source_of(0, 7);
+  CHECK(store.bytes_read().sources == 2 * bytes[4 * 3 + 3] + sizeof(std::uint64_t));
+  check_equal(store.bytes_read().classes + store.bytes_read().origins, 0);
 }
 
 namespace {

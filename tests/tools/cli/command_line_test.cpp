@@ -178,7 +178,9 @@ TEST_CASE("run --json prints one object with all that was asked for") {
   }
   check_json(report, R"({"environment_points": 30000, "cells_total": 1})");
   CHECK(report["engine"] == (report["poses"] <= 200 ? "kdtree" : "sweep"));
-  CHECK(report["bytes_read"] > 30000);
+  CHECK(report["bytes_read"]["coordinates"] > 30000);
+  CHECK(report["bytes_read"]["sources"] > 0);
+  check_json(report["bytes_read"], R"({"classes": 0, "origins": 0})");
 }
 
 TEST_CASE("info --json describes a store") {

@@ -139,8 +139,8 @@ Json search_with_set_engines(const SetEngines& asked) {
     out["grid_cell"] = grid->grid_cell();
   }
   out.update({{"cells_total", store.cells().size()},
-              {"cells_read", store.touched().cells},
-              {"bytes_read", store.touched().bytes},
+              {"cells_read", store.cells_touched()},
+              {"bytes_read", store.bytes_read().coordinates},
               {"pages", report.pages},
               {"slots", report.slots},
               {"needed_host_bytes", report.needed_host_bytes},

@@ -117,8 +117,8 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   PageEngine* const engines[] = {&engine};
   run_pages(store, cells, pages, engines, query, options.threads, progress, times);
   nlohmann::ordered_json out{{"pages", pages.size()},
-                             {"cells_read", store.touched().cells},
-                             {"bytes_read", store.touched().bytes},
+                             {"cells_read", store.cells_touched()},
+                             {"bytes_read", store.bytes_read().coordinates},
                              {"read_seconds", times.total}};
 #ifdef CLEARWAY_CUDA
   if (on_device) out["device"] = time_device(store, filter, cells, pages, layout);
