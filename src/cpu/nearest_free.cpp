@@ -42,7 +42,7 @@ struct BlockPlaces {
 
   BlockPlaces(const EnvironmentTree& tree, std::uint32_t cell, std::uint32_t block) {
     const std::uint32_t count = tree.points_in_block(cell, block);
-    const auto chunks = tree.cloud().coordinates(cell);
+    const auto chunks = tree.cloud().coordinates_of_block(cell);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       chunks[axis].decode(block * kBlockPoints, {q[axis], count});
     }
@@ -60,7 +60,7 @@ FreePoints::FreePoints(const EnvironmentTree& tree)
       inner_(tree.node_slots()),
       top_(tree.cloud().tree().size()) {}
 
-void FreePoints::add_cell(std::uint32_t cell, const HitSet& hits, const HitSet* below,
+void FreePoints::add_cell(std::uint32_t cell, std::span<const std::uint64_t> taken,
                           const IgnoredPoints& ignored) {
   const PackedCloud& cloud = tree_.cloud();
   const std::uint64_t first = tree_.block_index(cell, 0);
@@ -71,9 +71,8 @@ void FreePoints::add_cell(std::uint32_t cell, const HitSet& hits, const HitSet* 
   } else {
     for (std::uint32_t i = 0; i < node.block_count; ++i) words[i] = all_points(tree_, cell, i);
   }
-  for (std::uint32_t i = 0; i < node.block_count; ++i) {
-    words[i] &= ~hits.word(first + i);
-    if (below != nullptr) words[i] &= ~below->word(first + i);
+  for (std::size_t i = 0; i < std::min<std::size_t>(taken.size(), node.block_count); ++i) {
+    words[i] &= ~taken[i];
   }
   mark(node);
 }

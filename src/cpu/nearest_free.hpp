@@ -21,10 +21,10 @@ class FreePoints {
   /// The tree must outlive this object.
   explicit FreePoints(const EnvironmentTree& tree);
 
-  /// Finds the free points of a cell. hits: the colliding points; below: those that collide without
-  /// a floor, null where there is none. Different cells may be added at the same time. Throws
-  /// InputError for a damaged cell.
-  void add_cell(std::uint32_t cell, const HitSet& hits, const HitSet* below,
+  /// Finds the free points of a cell. taken: the points that collide, with a floor or without it,
+  /// bit i of word w being point 64 w + i; words at the end may be missing. Different cells may be
+  /// added at the same time. Throws InputError for a damaged cell.
+  void add_cell(std::uint32_t cell, std::span<const std::uint64_t> taken,
                 const IgnoredPoints& ignored);
   /// Called when all cells were added.
   void finish();

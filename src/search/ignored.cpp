@@ -188,21 +188,13 @@ class Heights {
     return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
   }
 
-  /// Counts the points of a cell that collide and are high. hits: a bit for each colliding point;
-  /// first_poses: their first poses.
-  std::uint64_t count(std::uint32_t cell, std::span<const std::uint64_t> hits,
-                      std::span<const std::uint32_t> first_poses) const {
+  /// The points of a cell that collide and are high.
+  CellRows high(std::uint32_t cell, const CellRows& colliding) const {
     const auto q = store_.coordinates(cell);
-    std::uint64_t high = 0;
-    for (std::size_t block = 0; block < hits.size(); ++block) {
-      for (std::uint64_t open = hits[block]; open != 0; open &= open - 1) {
-        const auto i = block * kBlockPoints + static_cast<unsigned>(std::countr_zero(open));
-        const auto at = static_cast<std::uint32_t>(i);
-        const Vec3 e = position(store_.quantisation(), q[0][at], q[1][at], q[2][at]);
-        high += is_high(e, first_poses[i]) ? 1 : 0;
-      }
-    }
-    return high;
+    return points_where(colliding, [&](std::uint32_t i, std::size_t row) {
+      const Vec3 e = position(store_.quantisation(), q[0][i], q[1][i], q[2][i]);
+      return is_high(e, colliding.poses[row]);
+    });
   }
 
  private:
@@ -222,25 +214,32 @@ Query query_of_ignored(const Query& query) {
   return out;
 }
 
-CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
-                                         std::uint64_t memory_bytes, PageEngineKind& kind,
-                                         const ShardCells* only, Progress& progress) {
+CollectedPages find_colliding_ignored(const StoreReader& store, const Query& query,
+                                      std::uint64_t memory_bytes, PageEngineKind& kind,
+                                      const ShardCells* only, AnswerRows& rows,
+                                      Progress& progress) {
   const Heights heights(store, query);
-  std::atomic<std::uint64_t> points = 0, high = 0;
-  const CollectPage count = [&](std::span<const PlannedCell> cells, const PageResult& found) {
+  const CollectPage add = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto hits = part_of_cell(found.hits, i, store.blocks_per_cell());
-      const std::uint32_t colliding = IgnoredPoints::count(hits);
-      if (colliding == 0) continue;
-      points += colliding;
-      high += heights.count(cells[i].cell, hits,
-                            part_of_cell(found.first_poses, i, store.cell_entries()));
+      const std::uint32_t cell = cells[i].cell;
+      CellRows colliding = hit_rows(part_of_cell(found.hits, i, store.blocks_per_cell()),
+                                    part_of_cell(found.first_poses, i, store.cell_entries()));
+      const CellRows high = colliding.count() > 0 ? heights.high(cell, colliding) : CellRows();
+      colliding.poses.clear();
+      rows.add(cell, {{PointQuestion::kIgnored, colliding}, {PointQuestion::kIgnoredHigh, high}});
     }
   };
-  const CollectedPages taken =
-      collect_pages(store, query, memory_bytes, kind, only, IgnoredPoints::Search::kIgnored,
-                    "ignored", count, progress);
-  return {points, high, taken.needed_host_bytes, taken.peak_device_bytes};
+  return collect_pages(
+      store,
+      {.query = query,
+       .memory_bytes = memory_bytes,
+       .kind = kind,
+       .only = only,
+       .collect = add,
+       .answered = [&](std::uint32_t cell) { return rows.answered(cell, PointQuestion::kIgnored); },
+       .stage = "ignored",
+       .search = IgnoredPoints::Search::kIgnored},
+      progress);
 }
 
 void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog& log) {

@@ -11,7 +11,9 @@
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
+#include "search/page_search.hpp"
 #include "search/shard_cells.hpp"
+#include "stream/answer_rows.hpp"
 
 namespace clearway {
 
@@ -30,24 +32,16 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
 // How many of the points that a query ignores would collide: found by a second search, of these
 // points alone.
 
-/// Counts of ignored points that would collide, and the memory in bytes that counting them took.
-struct CollidingIgnored {
-  /// Ignored points that would collide.
-  std::uint64_t points = 0;
-  /// Those of them that are first touched well above the model's lowest point.
-  std::uint64_t high = 0;
-  std::uint64_t needed_host_bytes = 0, peak_device_bytes = 0;
-};
-
 /// The query of the second search: exact, with first poses and without distances.
 Query query_of_ignored(const Query& query);
 
-/// Searches the ignored points of all cells, or of those of `only`. query: one made by
-/// query_of_ignored(). kind: the engine for that query. The numbers do not depend on the kind.
+/// Searches the ignored points of all cells that `rows` does not know, or of those of `only`, and
+/// adds to `rows` which of them would collide, and which of these are first touched well above the
+/// model's lowest point. query: one made by query_of_ignored(). kind: the engine for that query.
 /// Throws as search_pages() does.
-CollidingIgnored count_colliding_ignored(const StoreReader& store, const Query& query,
-                                         std::uint64_t memory_bytes, PageEngineKind& kind,
-                                         const ShardCells* only, Progress& progress);
+CollectedPages find_colliding_ignored(const StoreReader& store, const Query& query,
+                                      std::uint64_t memory_bytes, PageEngineKind& kind,
+                                      const ShardCells* only, AnswerRows& rows, Progress& progress);
 
 /// Warns where ignoring points may have made the answer: "ignored-collide" where more ignored
 /// points would collide than searched ones do, and "ignored-high" where some would collide well

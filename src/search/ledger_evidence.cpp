@@ -66,8 +66,13 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
       }
     }
   };
-  collect_pages(cloud, query, memory_bytes, *kind, nullptr, IgnoredPoints::Search::kOthers,
-                "places of the ledger", collect, progress);
+  collect_pages(cloud,
+                {.query = query,
+                 .memory_bytes = memory_bytes,
+                 .kind = *kind,
+                 .collect = collect,
+                 .stage = "places of the ledger"},
+                progress);
   return poses;
 }
 

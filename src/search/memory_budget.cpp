@@ -9,6 +9,7 @@
 #include "search/find_depths.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
 
 namespace clearway {
@@ -176,32 +177,16 @@ std::uint64_t input_bytes(const PackedCloud& cloud, const Query& query) {
 }
 
 std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query) {
-  const std::uint64_t a_slot = (query.first_pose ? sizeof(std::uint32_t) : 0) +
-                               (query.clearance > 0 ? sizeof(double) + sizeof(std::uint32_t) : 0);
-  const std::uint64_t a_pose = query.profile > 0 ? sizeof(ProfilePoint) + sizeof(double) : 0;
-  return cloud.entry_count() / 8 + a_slot * cloud.entry_count() + a_pose * query.poses.size() +
-         further_bytes(cloud, query);
+  std::uint64_t bytes = AnswerRows::bytes(cloud, query) + depth_bytes(cloud, query);
+  if (query.profile > 0) bytes += query.poses.size() * (sizeof(ProfilePoint) + sizeof(double));
+  // Further searches have a copy of model and poses.
+  const bool further =
+      query.first_pose || query.has_budget() || query.ignores_points() || has_floor(query);
+  return bytes + (further ? input_bytes(cloud, query) - cloud.allocated_bytes() : 0);
 }
 
 std::uint64_t depth_bytes(const PackedCloud& cloud, const Query& query) {
-  if (!query.depth) return 0;
-  const std::uint64_t without_floors = has_floor(query) ? cloud.entry_count() / 8 : 0;
-  return depth_search_bytes(cloud) + without_floors + kDeepWriteBytes;
-}
-
-std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query) {
-  const std::uint64_t depths = depth_bytes(cloud, query);
-  if (!query.first_pose && !query.has_budget()) return depths;
-  const std::uint64_t entries = cloud.entry_count();
-  const std::uint64_t hits = entries / 8;
-  const std::uint64_t poses = query.first_pose ? entries * sizeof(std::uint32_t) : 0;
-  std::uint64_t bytes = depths + input_bytes(cloud, query) - cloud.allocated_bytes();
-  if (query.first_pose) bytes += hits + poses;
-  if (!query.has_budget()) return bytes;
-  // Near points, certain points, and the distances that say which of them are deep in a solid.
-  const std::uint64_t distances =
-      has_solids(query) ? hits + entries * (sizeof(double) + sizeof(std::uint32_t)) : 0;
-  return bytes + 2 * hits + poses + distances;
+  return query.depth ? depth_search_bytes(cloud, query) + kDeepWriteBytes : 0;
 }
 
 std::uint64_t tree_building_bytes(const Query& query) {

@@ -84,22 +84,18 @@ std::uint64_t program_bytes(int threads);
 /// Bytes of the cloud's index, of models and of poses.
 std::uint64_t input_bytes(const PackedCloud& cloud, const Query& query);
 
-/// Bytes of a search's result: hits, first and last poses and clearances of all points, nearest
-/// points and chainage of all poses.
+/// Bytes that a search keeps of what it finds until the result is written: the places of the rows,
+/// nearest points and chainage of all poses, what the search for depths takes, and the inputs of
+/// further searches.
 std::uint64_t search_result_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes that the search for depths takes and that writing them takes more than writing other
-/// points, besides 16 for each colliding point; 0 where depths are not asked for.
+/// points; 0 where depths are not asked for.
 std::uint64_t depth_bytes(const PackedCloud& cloud, const Query& query);
 
 /// What writing takes more where rows have depths: their two columns of encoded pieces, and rows
 /// that are longer.
 inline constexpr std::uint64_t kDeepWriteBytes = std::uint64_t{4} << 20;
-
-/// Bytes that further searches keep besides the result of the first one, for last poses and for an
-/// error budget: the other hits, and a copy of the inputs; and those of depth_bytes(). 0 where none
-/// of these is asked for.
-std::uint64_t further_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Bytes that are taken while the trees over model and poses are built.
 std::uint64_t tree_building_bytes(const Query& query);

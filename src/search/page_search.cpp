@@ -10,6 +10,7 @@
 #include "search/memory_budget.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
 
 namespace clearway {
@@ -19,7 +20,26 @@ namespace {
 /// Bytes that are kept to the end of the run, besides what is found.
 std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int threads) {
   return program_bytes(threads) + input_bytes(store, query) +
-         SearchJournal::most_bytes(store, query, threads);
+         SearchJournal::most_bytes(store, query, threads) + search_result_bytes(store, query);
+}
+
+/// Adds the colliding points of all cells that have any and are not known yet.
+void add_hits(const StoreReader& store, const HitSet& hits, AnswerRows& rows) {
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    if (rows.answered(cell, PointQuestion::kHits)) continue;
+    const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
+    CellRows found;
+    for (std::uint64_t block = 0; block < store.blocks_per_cell(); ++block) {
+      found.words.push_back(hits.word(first + block));
+    }
+    if (found.count() == 0) continue;
+    if (hits.has_first_pose()) {
+      found.for_each([&](std::uint32_t point, std::size_t) {
+        found.poses.push_back(hits.first_pose(first * kBlockPoints + point));
+      });
+    }
+    rows.add(cell, {{PointQuestion::kHits, found}});
+  }
 }
 
 }  // namespace
@@ -27,27 +47,24 @@ std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int t
 std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                                   const SearchOptions& options) {
   return kept_by_kdtree(store, query, options.threads) +
-         std::max(kdtree_memory_bytes(store, query, options.threads) + further_bytes(store, query),
-                  search_result_bytes(store, query) + least_write_bytes(store));
+         std::max(kdtree_memory_bytes(store, query, options.threads),
+                  least_write_bytes(store, query));
 }
 
-Found search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
-                    const SearchOptions& options, SearchJournal* journal, Progress& progress,
-                    SearchReport& report) {
-  const std::uint64_t result = search_result_bytes(store, query);
-  const std::uint64_t kept = kept_by_kdtree(store, query, options.threads);
+SearchEnd search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
+                        const SearchOptions& options, PoseJournal* journal, AnswerRows& rows,
+                        Progress& progress, SearchReport& report) {
   report.needed_host_bytes = kdtree_needed_bytes(store, query, options);
   check_memory(report.needed_host_bytes, options.memory_bytes);
   const Stopwatch compute;
   KdTreeOptions how{.threads = options.threads, .journal = journal};
   if (only != nullptr) how.only = [only](std::uint32_t cell) { return only->contains(cell); };
   KdTreeStatistics counted;
-  HitSet hits = run_kdtree(store, query, how, progress, &counted);
+  const HitSet hits = run_kdtree(store, query, how, progress, &counted);
+  add_hits(store, hits, rows);
   report.seconds.compute = report.seconds.search = compute.seconds();
-  return {{.hits = std::move(hits),
-           .clearances = ClearanceSet(),
-           .ignored_points = counted.ignored_points},
-          options.memory_bytes - kept - result};
+  return {.ignored_points = counted.ignored_points,
+          .write_bytes = options.memory_bytes - kept_by_kdtree(store, query, options.threads)};
 }
 
 namespace {
@@ -82,26 +99,45 @@ int useful_threads(const PackedCloud& cloud, const Query& query, std::span<const
                                                     static_cast<std::uint64_t>(needs.threads)));
 }
 
-/// Begins to take the engines down, and waits until that is done where memory is too scarce to
-/// write the result at the same time.
-Found ended(const StoreReader& store, const PageEngineKind& kind, PageEngines engines, Found found,
-            std::uint64_t pinned_bytes) {
-  found.engine_end = kind.end(std::move(engines));
-  if (found.write_bytes / 2 >= pinned_bytes + least_write_bytes(store)) {
-    found.write_bytes -= pinned_bytes;
-  } else {
-    found.engine_end.clear();
+/// Runs the planned cells that are not answered yet. Returns how many points of them were not
+/// searched.
+std::uint64_t run_planned(const PackedCloud& cloud, const PageSearch& asked, PageBudget& budget,
+                          std::span<PageEngine* const> engines, Progress& progress,
+                          SearchReport& report) {
+  std::vector<PlannedCell>& cells = budget.cells();
+  if (asked.answered) {
+    std::erase_if(cells, [&](const PlannedCell& cell) { return asked.answered(cell.cell); });
   }
-  return found;
+  const std::vector<PlannedPage> pages =
+      paginate(cloud, cells, budget.layout().page_bytes, budget.layout().cells,
+               asked.query.ignores_points());
+  report.pages = pages.size();
+  for (const PageEngine* engine : engines) report.slots += engine->slots();
+  StageTimes stages;
+  const std::uint64_t ignored =
+      run_pages(cloud, cells, pages, engines,
+                {.stage = asked.stage,
+                 .ignored = budget.ignored(),
+                 .threads = useful_threads(cloud, asked.query, cells, asked.kind.needs())},
+                asked.collect, progress, stages);
+  report_stages(stages, report.seconds);
+  return ignored;
+}
+
+std::vector<PageEngine*> lanes_of(const PageEngines& engines) {
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  return lanes;
 }
 
 }  // namespace
 
-Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
-                   PageEngineKind& kind, const ShardCells* only, const SearchSteps& steps,
-                   Progress& progress, SearchReport& report, const MessageLog& log) {
+SearchEnd search_pages(const StoreReader& store, const PageSearch& asked, const SearchSteps& steps,
+                       Progress& progress, SearchReport& report, const MessageLog& log) {
   throw_if_stopped(progress);
-  PageBudget budget(store, query, memory_bytes, kind, only, least_write_bytes(store));
+  const std::uint64_t least = least_write_bytes(store, asked.query);
+  PageEngineKind& kind = asked.kind;
+  PageBudget budget(store, asked.query, asked.memory_bytes, kind, asked.only, least, asked.search);
   budget.find();
   report_plan(budget, kind, report, log);
 
@@ -110,47 +146,32 @@ Found search_pages(const StoreReader& store, const Query& query, std::uint64_t m
   const Stopwatch making;
   PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();
-  SearchJournal* const journal = steps.open_journal ? steps.open_journal() : nullptr;
-  std::vector<PlannedCell>& cells = budget.cells();
-  if (journal != nullptr) {
-    std::erase_if(cells,
-                  [&](const PlannedCell& cell) { return journal->cell_finished(cell.cell); });
-  }
-  const std::vector<PlannedPage> pages = paginate(store, cells, budget.layout().page_bytes,
-                                                  budget.layout().cells, query.ignores_points());
-  report.pages = pages.size();
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) {
-    report.slots += engine->slots();
-    lanes.push_back(engine.get());
-  }
-  StageTimes stages;
-  const int threads = useful_threads(store, query, cells, kind.needs());
-  SearchResult result =
-      run_pages(store, cells, pages, lanes, query, threads, progress, stages, journal);
-  report_stages(stages, report.seconds);
+  if (steps.made) steps.made();
+  const std::vector<PageEngine*> lanes = lanes_of(engines);
+  SearchEnd end{.ignored_points = run_planned(store, asked, budget, lanes, progress, report),
+                .write_bytes = budget.write_bytes()};
   kind.report_search({lanes.data(), lanes.size()}, report, log);
-  return ended(store, kind, std::move(engines), {std::move(result), budget.write_bytes()},
-               report.pinned_bytes);
+  end.engine_end = kind.end(std::move(engines));
+  // The engines are taken down while the result is written, unless memory is too scarce for both.
+  if (end.write_bytes / 2 >= report.pinned_bytes + least) {
+    end.write_bytes -= report.pinned_bytes;
+  } else {
+    end.engine_end.clear();
+  }
+  return end;
 }
 
-CollectedPages collect_pages(const PackedCloud& cloud, const Query& query,
-                             std::uint64_t memory_bytes, PageEngineKind& kind,
-                             const ShardCells* only, IgnoredPoints::Search search,
-                             const char* stage, const CollectPage& collect, Progress& progress) {
-  PageBudget budget(cloud, query, memory_bytes, kind, only, std::nullopt, search);
+CollectedPages collect_pages(const PackedCloud& cloud, const PageSearch& asked,
+                             Progress& progress) {
+  PageEngineKind& kind = asked.kind;
+  PageBudget budget(cloud, asked.query, asked.memory_bytes, kind, asked.only, std::nullopt,
+                    asked.search);
   budget.find();
   throw_if_stopped(progress);
   PageEngines engines = kind.make(budget.layout());
-  const std::vector<PlannedPage> pages = paginate(cloud, budget.cells(), budget.layout().page_bytes,
-                                                  budget.layout().cells, query.ignores_points());
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) lanes.push_back(engine.get());
-  StageTimes times;
-  run_pages(cloud, budget.cells(), pages, lanes,
-            {.stage = stage, .ignored = budget.ignored(), .threads = kind.needs().threads}, collect,
-            progress, times);
+  const std::vector<PageEngine*> lanes = lanes_of(engines);
   SearchReport taken;
+  run_planned(cloud, asked, budget, lanes, progress, taken);
   const MessageCallback silent;
   std::vector<Message> none;
   kind.report_search({lanes.data(), lanes.size()}, taken, MessageLog(silent, none));

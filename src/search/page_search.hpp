@@ -4,22 +4,29 @@
 #include <functional>
 
 #include "core/query/ignored_points.hpp"
-#include "core/query/search_result.hpp"
+#include "core/query/pose_journal.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 #include "search/shard_cells.hpp"
+#include "stream/answer_rows.hpp"
 #include "stream/run_pages.hpp"
-#include "stream/search_journal.hpp"
 
 namespace clearway {
 
-/// What a search found, and the bytes of memory that are left to write it with while its engines
-/// are still being taken down.
-struct Found {
-  SearchResult result;
-  std::uint64_t write_bytes = 0;
-  EngineEnd engine_end = {};
+/// A search on pages, and where its results go. All references outlive it.
+struct PageSearch {
+  const Query& query;
+  std::uint64_t memory_bytes;
+  PageEngineKind& kind;
+  /// The cells to search; null for all
+  const ShardCells* only = nullptr;
+  /// Takes the result of each page.
+  CollectPage collect;
+  /// Whether a cell was searched before; null where none was
+  std::function<bool(std::uint32_t)> answered = nullptr;
+  const char* stage = "search";  ///< the name for those who watch the progress
+  IgnoredPoints::Search search = IgnoredPoints::Search::kOthers;
 };
 
 /// What search_pages() asks its caller for; either may be empty.
@@ -27,39 +34,42 @@ struct SearchSteps {
   /// Called with the bytes that the search takes, on the host and on each device, once it is
   /// planned.
   std::function<void(std::uint64_t host, std::uint64_t device)> planned = {};
-  /// Returns the journal, or null; called once the engines are made.
-  std::function<SearchJournal*()> open_journal = {};
+  /// Called once the engines are made.
+  std::function<void()> made = {};
 };
 
-/// Plans the query, or those of its cells that `only` contains, within memory_bytes, makes the
-/// engines, and searches the cells that the journal does not have. Throws ResourceError naming the
-/// smallest budget that works, before the journal is asked for.
-Found search_pages(const StoreReader& store, const Query& query, std::uint64_t memory_bytes,
-                   PageEngineKind& kind, const ShardCells* only, const SearchSteps& steps,
-                   Progress& progress, SearchReport& report, const MessageLog& log);
+/// What a search leaves when it is done.
+struct SearchEnd {
+  std::uint64_t ignored_points = 0;  ///< number of ignored points in the cells that were searched
+  /// The bytes of memory that are left to write with while engines are still being taken down
+  std::uint64_t write_bytes = 0;
+  EngineEnd engine_end = {};
+};
+
+/// Plans a search whose answer is kept and written, makes the engines, and searches. Throws
+/// ResourceError naming the smallest budget that works, before the engines are made.
+SearchEnd search_pages(const StoreReader& store, const PageSearch& asked, const SearchSteps& steps,
+                       Progress& progress, SearchReport& report, const MessageLog& log);
 
 /// What a search that hands its pages to the caller took.
 struct CollectedPages {
   std::uint64_t needed_host_bytes = 0, peak_device_bytes = 0;
 };
 
-/// Searches the cells of a cloud, or those that `only` contains, and hands the result of each page
-/// to `collect`, so that no answer is kept. search: which points are searched; stage: the name for
-/// those who watch the progress. Throws ResourceError as search_pages() does.
-CollectedPages collect_pages(const PackedCloud& cloud, const Query& query,
-                             std::uint64_t memory_bytes, PageEngineKind& kind,
-                             const ShardCells* only, IgnoredPoints::Search search,
-                             const char* stage, const CollectPage& collect, Progress& progress);
+/// Searches for a caller that keeps nothing of the answer by cells. Throws ResourceError as
+/// search_pages() does.
+CollectedPages collect_pages(const PackedCloud& cloud, const PageSearch& asked, Progress& progress);
 
 /// The most bytes that a search with engine kdtree takes, besides the mapped store. options.threads
 /// is not 0.
 std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
                                   const SearchOptions& options);
 
-/// Searches all cells, or those of `only`, with engine kdtree. options.threads is not 0. Throws
-/// ResourceError where the memory is too little.
-Found search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
-                    const SearchOptions& options, SearchJournal* journal, Progress& progress,
-                    SearchReport& report);
+/// Searches all cells, or those of `only`, with engine kdtree, and adds the colliding points to
+/// `rows`. options.threads is not 0. journal: keeps what is found meanwhile; null where nothing
+/// does. Throws ResourceError where the memory is too little.
+SearchEnd search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
+                        const SearchOptions& options, PoseJournal* journal, AnswerRows& rows,
+                        Progress& progress, SearchReport& report);
 
 }  // namespace clearway

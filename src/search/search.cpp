@@ -1,11 +1,7 @@
 #include "clearway/search.hpp"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <atomic>
-#include <bit>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -39,26 +35,16 @@
 #include "search/seen_space.hpp"
 #include "search/session_state.hpp"
 #include "search/shard_cells.hpp"
-#include "stream/gather_rows.hpp"
+#include "stream/answer_rows.hpp"
+#include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
 
 namespace clearway {
 namespace {
 
-/// Passes on the progress of a search within a search under a name of its own.
-class StageOf final : public Progress {
- public:
-  StageOf(Progress& all, std::string_view name) : all_(all), name_(name) {}
-  void begin(std::string_view, std::uint64_t total, std::string_view unit) override {
-    all_.begin(name_, total, unit);
-  }
-  void advance(std::uint64_t units) override { all_.advance(units); }
-  void end() override { all_.end(); }
-  bool stop_requested() const override { return all_.stop_requested(); }
-
- private:
-  Progress& all_;
-  std::string_view name_;
+/// What a search has found, and what its last pass has left.
+struct AllFound : FoundAnswer {
+  SearchEnd end;
 };
 
 /// What was read after `before`.
@@ -113,11 +99,11 @@ class Search {
       take_finished();
     } else {
       resolve_device();
-      Found found = find_all();
+      AllFound found = find_all();
       session_.models().forget_all();
       publish(found);
       const Stopwatch ending;
-      found.engine_end.clear();
+      found.end.engine_end.clear();
       report_.seconds.end_wait = ending.seconds();
     }
     report_.seconds.total = total_.seconds();
@@ -126,14 +112,16 @@ class Search {
 
   SearchReport answer(AnswerInMemory& kept) {
     begin();
-    Found found = find_all();
-    found.engine_end.clear();
-    report_.ignored_looked_at = found.result.ignored_points;
+    AllFound found = find_all();
+    found.end.engine_end.clear();
+    report_.ignored_looked_at = ignored_points_;
+    const std::uint64_t rows_bytes = in_memory_.allocated_bytes();
+    const std::uint64_t write_bytes = found.end.write_bytes;
     const Stopwatch write;
     static_cast<ResultTables&>(kept) = session_.spare().take_tables();
     RowMemory rows = session_.spare().take_rows();
-    fill_tables(store_, std::move(found.result), header_, found.write_bytes, progress_, chainage(),
-                options_.threads, rows, kept);
+    fill_tables(store_, std::move(found), header_, write_bytes - std::min(write_bytes, rows_bytes),
+                progress_, chainage(), options_.threads, rows, kept);
     session_.spare().keep(std::move(rows));
     static_cast<TableSummary&>(report_) = summary_of(kept);
     report_.seconds.write = write.seconds();
@@ -164,13 +152,13 @@ class Search {
     }
   }
 
-  /// What is searched after the colliding points: reads the hits, and adds a part to what was
-  /// found.
-  using Pass = void (Search::*)(Found& found);
+  /// What is searched after the colliding points: reads what was found, and adds to it.
+  using Pass = void (Search::*)(AllFound& found);
 
   /// The further passes that the query asks for, in their order.
   std::vector<Pass> further_passes() const {
     std::vector<Pass> passes;
+    if (report_.ignored.points > 0) passes.push_back(&Search::find_colliding_ignored_points);
     if (query_.first_pose) passes.push_back(&Search::find_last_poses);
     if (header_.budget) passes.push_back(&Search::find_certain);
     if (header_.budget) passes.push_back(&Search::find_near);
@@ -180,7 +168,7 @@ class Search {
   }
 
   /// Searches all that the query asks for. Only the last pass ends the GPUs.
-  Found find_all() {
+  AllFound find_all() {
     const std::vector<Pass> passes = further_passes();
     const bool end_gpus = std::exchange(options_.end_gpus, false);
     choose_device_and_engine();
@@ -190,19 +178,19 @@ class Search {
         has_floor(query_)) {
       take_memory(~0ULL);
     }
-    const CollidingIgnored ignored = count_ignored_that_collide();
     options_.end_gpus = end_gpus && passes.empty();
-    Found found = find_hits();
-    report_.needed_host_bytes = std::max(report_.needed_host_bytes, ignored.needed_host_bytes);
-    report_.peak_device_bytes = std::max(report_.peak_device_bytes, ignored.peak_device_bytes);
+    AllFound found;
+    if (query_.profile > 0) found.profile = ProfileSet(query_.poses.size());
+    find_hits(found);
+    found.rows = rows_;
     for (const Pass& pass : passes) {
-      found.engine_end.clear();
+      found.end.engine_end.clear();
       options_.end_gpus = end_gpus && &pass == &passes.back();
       (this->*pass)(found);
     }
     if (query_.depth) find_depths_of(found);
     if (query_.ignores_points()) {
-      report_.colliding_points = found.result.hits.count();
+      report_.colliding_points = rows_->points(PointQuestion::kHits);
       warn_of_colliding_ignored(report_, store_.metadata().unit, log_);
     }
     return found;
@@ -327,91 +315,99 @@ class Search {
   }
 
   /// The first pass: finds the colliding points, with what is asked about each of them.
-  Found find_hits() {
-    Found found = options_.engine == Engine::kKdtree ? find_by_kdtree() : find_on_pages();
+  void find_hits(AllFound& found) {
+    if (options_.engine == Engine::kKdtree) {
+      take_memory(kdtree_needed_bytes(store_, query_, options_) + (file_ ? 0 : kMemoryStep));
+      open_rows(found.profile);
+      found.end =
+          search_kdtree(store_, query_, only(), options_, journal_, *rows_, progress_, report_);
+    } else {
+      find_on_pages(found);
+    }
+    ignored_points_ = found.end.ignored_points;
     if (file_) {
       report_.resumed_cells = file_->journal.earlier().cells;
       report_.resumed_poses = file_->journal.earlier().poses;
     }
-    return found;
-  }
-
-  Found find_by_kdtree() {
-    take_memory(kdtree_needed_bytes(store_, query_, options_));
-    return search_kdtree(store_, query_, only(), options_, open_journal(), progress_, report_);
   }
 
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
-  /// Searches the ignored points alone. This comes before the first pass because it leaves nothing
-  /// in memory. The journal does not keep it, so a run that is resumed repeats it. The numbers do
-  /// not depend on the device.
-  CollidingIgnored count_ignored_that_collide() {
-    CollidingIgnored ignored;
-    if (!query_.ignores_points()) return ignored;
-    const Stopwatch clock;
-    if (report_.ignored.points > 0) {
-      const Query query = query_of_ignored(query_);
-      SearchOptions options = options_;
-      options.engine = Engine::kSweep;
-      ignored = engines_.on(report_.device, [&](Device device) {
-        return count_colliding_ignored(store_, query, options.memory_bytes,
-                                       *engines_.kind(device, store_, query, options), only(),
-                                       progress_);
-      });
-    }
-    report_.ignored_colliding = ignored.points;
-    report_.ignored_colliding_high = ignored.high;
-    report_.seconds.ignored = clock.seconds();
-    return ignored;
-  }
-
   /// Searches page by page. A GPU that the user did not ask for is given up for the CPU only before
   /// the journal is open.
-  Found find_on_pages() {
-    return engines_.on(
-        report_.device, [&](Device device) { return find_on(device); },
+  void find_on_pages(AllFound& found) {
+    found.end = engines_.on(
+        report_.device, [&](Device device) { return find_on(device, found.profile); },
         [&](const ResourceError&) {
-          if (open_ != nullptr) throw;
+          if (journal_ != nullptr) throw;
         });
   }
 
-  Found find_on(Device device) {
+  SearchEnd find_on(Device device, ProfileSet& profile) {
     report_.device = device;
     report_.device_name = DeviceChoice().name;
     // A journal that does not match is refused before anything is planned.
-    if (device == Device::kCpu || !fallback_allowed(options_)) open_journal();
+    if (device == Device::kCpu || !fallback_allowed(options_)) open_rows(profile);
     const std::unique_ptr<PageEngineKind> kind = engines_.kind(device, store_, query_, options_);
-    return search_pages(store_, query_, options_.memory_bytes, *kind, only(),
-                        {.planned =
-                             [this](std::uint64_t host, std::uint64_t on_device) {
-                               take_memory(host);
-                               engines_.take_device_memory(on_device, progress_);
-                             },
-                         .open_journal = [this] { return open_journal(); }},
-                        progress_, report_, log_);
+    CollectPage keep;
+    return search_pages(
+        store_,
+        {.query = query_,
+         .memory_bytes = options_.memory_bytes,
+         .kind = *kind,
+         .only = only(),
+         .collect = [&](std::span<const PlannedCell> cells,
+                        const PageResult& page) { keep(cells, page); },
+         .answered =
+             [&](std::uint32_t cell) { return rows_->answered(cell, PointQuestion::kHits); }},
+        {.planned =
+             [&](std::uint64_t host, std::uint64_t on_device) {
+               take_memory(host + (file_ ? 0 : kMemoryStep));
+               engines_.take_device_memory(on_device, progress_);
+             },
+         .made =
+             [&] {
+               open_rows(profile);
+               keep = keep_answer(store_, *rows_, profile, journal_);
+             }},
+        progress_, report_, log_);
   }
 
-  /// The cells that have entries of a set.
-  template <typename Set>
-  ShardCells cells_with(const Set& set, const SearchResult& result) const {
-    SetCells with;
-    ThreadLimit(options_.threads).run([&] { with = cells_of(store_, set, result.cells); });
+  /// The cells in which a question has found points.
+  ShardCells cells_with(PointQuestion question) const {
     std::vector<bool> in(store_.cells().size());
-    for (const std::uint32_t cell : with.cells) in[cell] = true;
+    for (const std::uint32_t cell : rows_->cells(question)) in[cell] = true;
     return ShardCells(std::move(in));
   }
 
-  /// Searches the cells that have colliding points once more, with the poses in reverse order.
-  void find_last_poses(Found& found) {
-    if (query_.poses.size() == 1) {  // the last pose is the first one
-      found.result.last_poses.emplace(query_, HitSet(store_.entry_count(), true));
-      return;
-    }
-    const ShardCells cells = cells_with(found.result.hits, found.result);
-    if (cells.empty()) return;
-    Found other = search_further(found, backwards(query_), &cells, "last poses");
-    found.result.last_poses.emplace(query_, std::move(other.result.hits));
+  /// Searches the ignored points alone. The numbers do not depend on the device.
+  void find_colliding_ignored_points(AllFound&) {
+    const Stopwatch clock;
+    further_.query = query_of_ignored(query_);
+    further_.options = options_;
+    further_.options.engine = Engine::kSweep;
+    const CollectedPages taken = engines_.on(report_.device, [&](Device device) {
+      return find_colliding_ignored(
+          store_, further_.query, options_.memory_bytes,
+          *engines_.kind(device, store_, further_.query, further_.options), only(), *rows_,
+          progress_);
+    });
+    report_.needed_host_bytes = std::max(report_.needed_host_bytes, taken.needed_host_bytes);
+    report_.peak_device_bytes = std::max(report_.peak_device_bytes, taken.peak_device_bytes);
+    report_.ignored_colliding = rows_->points(PointQuestion::kIgnored);
+    report_.ignored_colliding_high = rows_->points(PointQuestion::kIgnoredHigh);
+    report_.seconds.ignored = clock.seconds();
+  }
+
+  /// Searches the cells that have colliding points once more, with the poses in reverse order. The
+  /// last of a single pose is the first one.
+  void find_last_poses(AllFound& found) {
+    const ShardCells cells = cells_with(PointQuestion::kHits);
+    if (query_.poses.size() == 1 || cells.empty()) return;
+    search_further(found, backwards(query_), &cells, "last poses", PointQuestion::kLast,
+                   [this](std::uint32_t cell, const FoundInCell& page) {
+                     rows_->add(cell, {{PointQuestion::kLast, page.hits()}});
+                   });
   }
 
   /// The query without what a further search for points alone does not need. Floors keep their
@@ -428,27 +424,15 @@ class Search {
     return query;
   }
 
-  /// Calls work(word) for the number of each 64 entries, in parallel.
-  template <typename Work>
-  void for_each_word_of_entries(const Work& work) const {
-    const std::uint64_t words = store_.entry_count() / 64;
-    ThreadLimit(options_.threads).run([&] {
-      tbb::parallel_for(tbb::blocked_range<std::uint64_t>(0, words, 1024), [&](const auto& range) {
-        for (std::uint64_t word = range.begin(); word != range.end(); ++word) work(word);
-      });
-    });
-  }
-
   /// Finds the colliding points that by the error budget are certainly too close, and whether
   /// enough of these hang together.
-  void find_certain(Found& found) {
-    found.result.certain = certain_points(found);
+  void find_certain(AllFound& found) {
+    find_certain_points(found);
     ThreadLimit(options_.threads).run([&] {
-      const HitSet& certain = *found.result.certain;
       CertainGroup group(store_.quantisation(), header_.gap, progress_);
-      for (const std::uint32_t cell : cells_of(store_, certain).cells) {
+      for (const std::uint32_t cell : rows_->cells(PointQuestion::kCertain)) {
         const auto q = store_.coordinates(cell);
-        for_each_entry(store_, certain, cell, [&](std::uint64_t, std::uint32_t i) {
+        rows_->read(cell, PointQuestion::kCertain).for_each([&](std::uint32_t i, std::size_t) {
           group.add({q[0][i], q[1][i], q[2][i]});
         });
       }
@@ -456,119 +440,110 @@ class Search {
     });
   }
 
-  /// The colliding points that are closer than the certain radius, which is at most that of the
-  /// query. Below 0 these are the points that are deeper than it inside a solid, and for a model
-  /// without solids there is none.
-  HitSet certain_points(Found& found) {
+  /// Finds the colliding points that are closer than the certain radius, which is at most that of
+  /// the query. Below 0 these are the points that are deeper than it inside a solid, and for a
+  /// model without solids there is none.
+  void find_certain_points(AllFound& found) {
     const double radius = header_.budget->certain_radius(query_.radius);
-    const HitSet& hits = found.result.hits;
-    HitSet certain(store_.entry_count(), false);
-    const ShardCells cells = cells_with(hits, found.result);
-    if (cells.empty()) return certain;
+    const ShardCells cells = cells_with(PointQuestion::kHits);
+    if (cells.empty()) return;
     if (!(radius < query_.radius)) {
-      for_each_word_of_entries([&](std::uint64_t word) {
-        if (const std::uint64_t bits = hits.word(word)) certain.mark_word(word, bits);
-      });
+      for (const std::uint32_t cell : rows_->cells(PointQuestion::kHits)) {
+        const auto all = [](std::uint32_t, std::size_t) { return true; };
+        rows_->add(cell, {{PointQuestion::kCertain,
+                           points_where(rows_->read(cell, PointQuestion::kHits), all)}});
+      }
     } else if (radius > 0) {
-      Found other = search_further(found, plain_query(radius, false), &cells, "certain points");
-      certain = std::move(other.result.hits);
+      search_further(found, plain_query(radius, false), &cells, "certain points",
+                     PointQuestion::kCertain, [this](std::uint32_t cell, const FoundInCell& page) {
+                       rows_->add(cell, {{PointQuestion::kCertain, page.hits()}});
+                     });
     } else if (has_solids(query_)) {
       Query signed_query = plain_query(query_.radius, false);
       signed_query.clearance = query_.radius;
       raise_floors(signed_query, query_.radius - radius);
-      const Found other = search_further(found, std::move(signed_query), &cells, "certain points");
       const double deeper = -(radius * radius);
-      for_each_word_of_entries([&](std::uint64_t word) {
-        for (std::uint64_t bits = hits.word(word); bits != 0; bits &= bits - 1) {
-          const std::uint64_t entry = 64 * word + static_cast<unsigned>(std::countr_zero(bits));
-          if (other.result.clearances.at(entry).squared < deeper) certain.mark(entry);
-        }
-      });
+      search_further(
+          found, std::move(signed_query), &cells, "certain points", PointQuestion::kCertain,
+          [this, deeper](std::uint32_t cell, const FoundInCell& page) {
+            const CellRows hits = rows_->read(cell, PointQuestion::kHits);
+            const CellRows signed_distances = page.clearances();
+            const CellRows certain =
+                points_where(signed_distances, [&](std::uint32_t point, std::size_t row) {
+                  return signed_distances.distances[row] < deeper && hits.contains(point);
+                });
+            rows_->add(cell, {{PointQuestion::kCertain, certain}});
+          });
     }
-    return certain;
   }
 
   /// Finds the points that do not collide but may be too close by the error budget.
-  void find_near(Found& found) {
+  void find_near(AllFound& found) {
     const double radius = header_.budget->near_radius(query_.radius);
-    const HitSet& hits = found.result.hits;
-    if (!(radius > query_.radius)) {
-      found.result.near.emplace(store_.entry_count(), query_.first_pose);
-      return;
-    }
-    Found other =
-        search_further(found, plain_query(radius, query_.first_pose), only(), "near points");
-    HitSet& near = found.result.near.emplace(std::move(other.result.hits));
-    for_each_word_of_entries([&](std::uint64_t word) {
-      if (const std::uint64_t both = near.word(word) & hits.word(word)) near.forget(word, both);
-    });
+    if (!(radius > query_.radius)) return;
+    search_further(found, plain_query(radius, query_.first_pose), only(), "near points",
+                   PointQuestion::kNear, [this](std::uint32_t cell, const FoundInCell& page) {
+                     rows_->add(cell, {{PointQuestion::kNear, page.hits_without(rows_->read(
+                                                                  cell, PointQuestion::kHits))}});
+                   });
   }
 
   /// Counts the points that a search of the set without floors finds, and that are neither
   /// colliding nor near. Its seconds are reported apart from those of the search.
-  void count_below_floor(Found& found) {
+  void count_below_floor(AllFound& found) {
     const Stopwatch clock;
     const SearchSeconds before = report_.seconds;
     Query query = plain_query(query_.radius, false);
     query.floor.reset();
     for (Body& body : query.bodies) body.floor.reset();
-    Found all = search_further(found, std::move(query), only(), "below the floor");
-    const SearchResult& result = found.result;
-    std::atomic<std::uint64_t> below = 0;
-    for_each_word_of_entries([&](std::uint64_t word) {
-      const std::uint64_t judged =
-          result.hits.word(word) | (result.near ? result.near->word(word) : 0);
-      const std::uint64_t left = all.result.hits.word(word) & ~judged;
-      if (left != 0) below += static_cast<std::uint64_t>(std::popcount(left));
-    });
+    search_further(found, std::move(query), only(), "below the floor", PointQuestion::kBelow,
+                   [this](std::uint32_t cell, const FoundInCell& page) {
+                     rows_->add(cell, {{PointQuestion::kBelow, page.hits_without(rows_->read(
+                                                                   cell, PointQuestion::kHits))}});
+                   });
+    std::uint64_t below = rows_->points(PointQuestion::kBelow);
+    if (header_.budget) {
+      for (const std::uint32_t cell : rows_->cells(PointQuestion::kBelow)) {
+        const CellRows near = rows_->read(cell, PointQuestion::kNear);
+        below -= points_where(rows_->read(cell, PointQuestion::kBelow), [&](std::uint32_t point,
+                                                                            std::size_t) {
+                   return near.contains(point);
+                 }).count();
+      }
+    }
     report_.floor_colliding = below;
     report_.seconds = before;
     report_.seconds.below = clock.seconds();
-    if (query_.depth) without_floors_.emplace(std::move(all.result.hits));
   }
 
   /// Finds the free point that is nearest to each colliding one, on the CPU, after all searches for
-  /// points. No journal keeps the depths, so a run that is resumed finds them again.
-  void find_depths_of(Found& found) {
+  /// points.
+  void find_depths_of(AllFound& found) {
     const Stopwatch clock;
-    // What further_bytes() set aside for depths, and what there is to write with
-    const std::uint64_t memory = depth_bytes(store_, query_) + found.write_bytes;
-    const HitSet* const below = without_floors_ ? &*without_floors_ : nullptr;
-    const std::uint64_t taken = below != nullptr ? below->allocated_bytes() : 0;
-    const std::uint64_t rows =
-        DepthSet::bytes(store_.entry_count(), found.result.hits.count()) + kDeepWriteBytes;
-    const auto refuse = [&](std::uint64_t needed) {
+    // What search_result_bytes() set aside for depths, and what there is to write with
+    const std::uint64_t memory = depth_bytes(store_, query_) + found.end.write_bytes;
+    try {
+      find_depths(store_, query_, *rows_, options_.threads, memory, progress_);
+    } catch (const ResourceError& error) {
+      if (error.remedy() != Remedy::kMoreMemory || !(error.amount() > 0)) throw;
+      const auto needed = static_cast<std::uint64_t>(error.amount());
       refuse_memory(options_.memory_bytes + (needed - std::min(needed, memory)),
                     options_.memory_bytes);
-    };
-    if (rows + least_write_bytes(store_) > memory) refuse(rows + least_write_bytes(store_));
-    try {
-      found.result.depths = find_depths(store_,
-                                        {.query = query_,
-                                         .found = found.result,
-                                         .below = below,
-                                         .threads = options_.threads,
-                                         .memory_bytes = memory - taken},
-                                        progress_);
-    } catch (const ResourceError& error) {
-      if (error.remedy() != Remedy::kMoreMemory) throw;
-      refuse(taken + static_cast<std::uint64_t>(error.amount()));
     }
-    without_floors_.reset();
-    found.write_bytes = memory - rows;
-    report_.needed_host_bytes += found.result.hits.count() * sizeof(Depth);
+    found.end.write_bytes = memory - kDeepWriteBytes;
     report_.seconds.depth = clock.seconds();
   }
 
   /// Finds out which places that the model sweeps no beam of the scanner passed through. A shard
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
-  void find_unseen(Found& found) {
+  void find_unseen(AllFound& found) {
     cells_read_ = store_.cells_touched();
     further_.options = options_;
     further_.options.engine = Engine::kSweep;
     further_.options.end_gpus = false;  // following the beams does
-    SeenSpace space = engines_.on(
-        report_.device, [&](Device device) { return seen_space_on(device, found.write_bytes); });
+    SeenSpace space = engines_.on(report_.device, [&](Device device) {
+      return seen_space_on(device, found.end.write_bytes);
+    });
     report_.seconds.swept = space.sweep_seconds;
     report_.seconds.beams = space.beam_seconds;
     report_.peak_device_bytes = std::max(report_.peak_device_bytes, space.taken.peak_device_bytes);
@@ -581,9 +556,9 @@ class Search {
     report_.seen = space.summary;
     const std::uint64_t rows =
         space.unseen.size() * kUnseenRowBytes + space.swept.size() * kSweptRowBytes;
-    found.write_bytes -= std::min(found.write_bytes / 2, rows);
-    found.result.unseen = std::move(space.unseen);
-    found.result.swept = std::move(space.swept);
+    found.end.write_bytes -= std::min(found.end.write_bytes / 2, rows);
+    found.unseen = std::move(space.unseen);
+    found.swept = std::move(space.swept);
   }
 
   /// memory_bytes: what the search so far leaves.
@@ -617,33 +592,59 @@ class Search {
     }
   }
 
+  /// What a further search found in one cell of a page.
+  struct FoundInCell {
+    std::span<const std::uint64_t> words;
+    std::span<const std::uint32_t> first_poses;
+    std::span<const Clearance> all_clearances;
+
+    CellRows hits() const { return hit_rows(words, first_poses); }
+    CellRows clearances() const { return clearance_rows(all_clearances); }
+    /// The hits that are not points of `others`.
+    CellRows hits_without(const CellRows& others) const {
+      std::vector<std::uint64_t> left(words.begin(), words.end());
+      for (std::size_t block = 0; block < left.size(); ++block) left[block] &= ~others.word(block);
+      return hit_rows(left, first_poses);
+    }
+  };
+  using KeepCell = std::function<void(std::uint32_t cell, const FoundInCell&)>;
+
   /// Searches all cells, or those of `cells`, for another query after the first search, as stage
-  /// `name`. No journal keeps this search, so a run that is resumed begins it again. Leaves in
-  /// `found` the end of the engines and the memory that is left to write with.
-  Found search_further(Found& found, Query query, const ShardCells* cells, const char* name) {
+  /// `name`; cells for which `question` is answered are left out. keep: called for each cell.
+  /// Leaves in `found` the end of the engines and the memory that is left to write with.
+  void search_further(AllFound& found, Query query, const ShardCells* cells, const char* name,
+                      PointQuestion question, const KeepCell& keep) {
     further_.query = std::move(query);
     further_.options = options_;
+    if (further_.options.engine == Engine::kKdtree) further_.options.engine = Engine::kSweep;
     // What the first search took is enough, except for rounding in the plan.
     further_.options.memory_bytes += options_.memory_bytes / 16;
     SearchReport report;
     const MessageCallback silent;
     const MessageLog log(silent, report.warnings);
-    StageOf progress(progress_, name);
-    Found other = [&] {
-      const auto& [asked, options] = further_;
-      if (report_.engine == Engine::kKdtree) {
-        return search_kdtree(store_, asked, cells, options, nullptr, progress, report);
+    const CollectPage collect = [&](std::span<const PlannedCell> of, const PageResult& page) {
+      for (std::size_t i = 0; i < of.size(); ++i) {
+        keep(of[i].cell, {part_of_cell(page.hits, i, store_.blocks_per_cell()),
+                          part_of_cell(page.first_poses, i, store_.cell_entries()),
+                          part_of_cell(page.clearances, i, store_.cell_entries())});
       }
-      return engines_.on(report_.device, [&](Device device) {
-        return search_pages(store_, asked, options.memory_bytes,
-                            *engines_.kind(device, store_, asked, options), cells, {}, progress,
-                            report, log);
-      });
-    }();
-    found.engine_end = std::move(other.engine_end);
-    found.write_bytes = std::min(found.write_bytes, other.write_bytes);
+    };
+    SearchEnd end = engines_.on(report_.device, [&](Device device) {
+      const auto kind = engines_.kind(device, store_, further_.query, further_.options);
+      return search_pages(
+          store_,
+          {.query = further_.query,
+           .memory_bytes = further_.options.memory_bytes,
+           .kind = *kind,
+           .only = cells,
+           .collect = collect,
+           .answered = [&](std::uint32_t cell) { return rows_->answered(cell, question); },
+           .stage = name},
+          {}, progress_, report, log);
+    });
+    found.end.engine_end = std::move(end.engine_end);
+    found.end.write_bytes = std::min(found.end.write_bytes, end.write_bytes);
     add_seconds(report.seconds, report_.seconds);
-    return other;
   }
 
   static void add_seconds(const SearchSeconds& more, SearchSeconds& seconds) {
@@ -654,23 +655,41 @@ class Search {
     }
   }
 
-  /// The journal of the output file; null for an answer in memory.
-  SearchJournal* open_journal() {
-    if (file_ && open_ == nullptr) {
-      open_ = &file_->journal.open(store_, query_, header_, report_.engine, report_.device);
+  /// Opens where rows are kept: the journal of the output file, with what it holds already, or
+  /// memory. profile: gets the nearest points that the journal holds.
+  void open_rows(ProfileSet& profile) {
+    if (rows_ != nullptr) return;
+    if (file_) {
+      journal_ = &file_->journal.open(store_, query_, header_, report_.engine, report_.device);
+      if (query_.profile > 0) journal_->restore(profile);
+      rows_ = &journal_->rows();
+    } else {
+      rows_ = &rows_in_memory_.emplace(store_, query_, in_memory_);
     }
-    return open_;
+  }
+
+  /// Takes memory for more rows of an answer in memory. It does not wait for other questions,
+  /// which may wait for this one.
+  void take_for_rows(std::uint64_t bytes) {
+    rows_bytes_ += bytes;
+    const std::uint64_t needed = report_.needed_host_bytes + rows_bytes_;
+    if (memory_.grow(needed)) return;
+    throw ResourceError(format_size(options_.memory_bytes) +
+                            " of memory is too little for what this question finds: it needs " +
+                            format_size(needed) +
+                            " or more. A result file keeps what is found on the disk",
+                        Remedy::kMoreMemory, static_cast<double>(needed));
   }
 
   std::vector<double> chainage() const {
     return query_.profile > 0 ? chainage_of(query_.poses) : std::vector<double>();
   }
 
-  void publish(const Found& found) {
+  void publish(const AllFound& found) {
     const Stopwatch write;
     try {
       static_cast<TableSummary&>(report_) =
-          write_result(store_, found.result, header_, file_->pending.partial(), found.write_bytes,
+          write_result(store_, found, header_, file_->pending.partial(), found.end.write_bytes,
                        progress_, chainage(), options_.threads, findings());
       store_.check_read();
       file_->pending.publish();
@@ -679,7 +698,7 @@ class Search {
     }
     file_->journal.remove_after_publication();
     report_.cells_read = cells_read_.value_or(store_.cells_touched());
-    report_.ignored_looked_at = found.result.ignored_points;
+    report_.ignored_looked_at = ignored_points_;
     report_.bytes_read = since(bytes_before_, store_.bytes_read());
     report_.seconds.write = write.seconds();
   }
@@ -719,8 +738,6 @@ class Search {
   ResultHeader header_;
   SearchEngines engines_;
   std::optional<ShardCells> shard_;
-  /// The points that collide without floors, where depths need them.
-  std::optional<HitSet> without_floors_;
   /// The cells that the searches for points have read, set before beams are followed.
   std::optional<std::uint64_t> cells_read_;
   /// What earlier searches of the same store have read
@@ -730,7 +747,12 @@ class Search {
     Query query;
     SearchOptions options;
   } further_;
-  SearchJournal* open_ = nullptr;
+  std::uint64_t ignored_points_ = 0;  ///< in the cells that the first pass searched
+  SearchJournal* journal_ = nullptr;  ///< null before it is open, and for an answer in memory
+  RowsInMemory in_memory_{[this](std::uint64_t bytes) { take_for_rows(bytes); }};
+  std::uint64_t rows_bytes_ = 0;  ///< what rows take in memory
+  std::optional<AnswerRows> rows_in_memory_;
+  AnswerRows* rows_ = nullptr;  ///< what was found; null before it is open
 };
 
 void check_question(const Query& query, const SearchOptions& options) {

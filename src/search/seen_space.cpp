@@ -108,8 +108,13 @@ void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_byt
     }
     if (swept.bytes() > most_bytes) refuse_more(kMemoryParts * swept.bytes(), most_bytes);
   };
-  taken = collect_pages(cloud, query, memory_bytes, kind, nullptr, IgnoredPoints::Search::kOthers,
-                        "swept space", collect, progress);
+  taken = collect_pages(cloud,
+                        {.query = query,
+                         .memory_bytes = memory_bytes,
+                         .kind = kind,
+                         .collect = collect,
+                         .stage = "swept space"},
+                        progress);
 }
 
 /// How much of the swept cubes lies in each cell of the cross-sections.

@@ -41,6 +41,17 @@ void SharedMemory::Share::take(std::uint64_t bytes, const Progress& progress) {
   memory_.in_use_ += taken_;
 }
 
+bool SharedMemory::Share::grow(std::uint64_t bytes) {
+  if (bytes <= taken_) return true;
+  const std::lock_guard lock(memory_.mutex_);
+  const std::uint64_t free = memory_.bytes_ - std::min(memory_.bytes_, memory_.in_use_);
+  const std::uint64_t more = std::min(std::max(bytes - taken_, kMemoryStep), free);
+  if (taken_ + more < bytes) return false;
+  taken_ += more;
+  memory_.in_use_ += more;
+  return true;
+}
+
 namespace {
 
 /// The share of a session's memory that models of earlier questions may keep.

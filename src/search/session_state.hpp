@@ -20,6 +20,9 @@
 
 namespace clearway {
 
+/// The steps in which a question takes memory for what it finds.
+inline constexpr std::uint64_t kMemoryStep = std::uint64_t{8} << 20;
+
 /// Memory that questions of several threads share.
 class SharedMemory {
  public:
@@ -39,6 +42,10 @@ class SharedMemory {
     /// Waits until so many bytes are free, and takes them; or all bytes, where more are asked for.
     /// Does nothing after the first time. Throws Interrupted when the progress asks to stop.
     void take(std::uint64_t bytes, const Progress& progress);
+
+    /// Takes what is missing to so many bytes, in steps, without waiting. Returns whether the share
+    /// has as many now.
+    bool grow(std::uint64_t bytes);
 
    private:
     SharedMemory& memory_;

@@ -19,65 +19,9 @@
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
 #include "io/store/store_reader.hpp"
+#include "stream/answer_rows.hpp"
 
 namespace clearway {
-
-/// The cells that have entries of a set, and the number of these entries in all cells.
-struct SetCells {
-  std::vector<std::uint32_t> cells;
-  std::uint64_t entries = 0;
-};
-
-/// Calls visit(entry of bit 0, bits) for each word of a cell.
-template <typename Set, typename Visit>
-void for_each_word(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
-  const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
-  const std::uint64_t blocks = divide_up(store.cells()[cell].count, kBlockPoints);
-  for (std::uint64_t block = 0; block < blocks; ++block) {
-    visit((first + block) * kBlockPoints, set.word(first + block));
-  }
-}
-
-/// Calls visit(entry, index in the cell) for every entry of a cell that is in the set.
-template <typename Set, typename Visit>
-void for_each_entry(const StoreReader& store, const Set& set, std::uint32_t cell, Visit visit) {
-  const std::uint64_t first = std::uint64_t{cell} * store.cell_entries();
-  for_each_word(store, set, cell, [&](std::uint64_t entry, std::uint64_t bits) {
-    for (; bits != 0; bits &= bits - 1) {
-      const std::uint64_t at = entry + static_cast<unsigned>(std::countr_zero(bits));
-      visit(at, static_cast<std::uint32_t>(at - first));
-    }
-  });
-}
-
-/// The cells that have entries. among: the cells that may have any, ascending; nullopt for all.
-template <typename Set>
-SetCells cells_of(const StoreReader& store, const Set& set,
-                  const std::optional<std::vector<std::uint32_t>>& among = {}) {
-  const auto cells = static_cast<std::uint32_t>(among ? among->size() : store.cells().size());
-  const auto cell_at = [&](std::uint32_t i) { return among ? (*among)[i] : i; };
-  std::vector<std::uint32_t> counts(cells);
-  using Range = tbb::blocked_range<std::uint32_t>;
-  {
-    const ParallelScope scope;
-    const auto count = piece_of(scope, [&](const Range& range) {
-      for (std::uint32_t i = range.begin(); i != range.end(); ++i) {
-        for_each_word(store, set, cell_at(i), [&](std::uint64_t, std::uint64_t bits) {
-          counts[i] += static_cast<std::uint32_t>(std::popcount(bits));
-        });
-      }
-    });
-    scope.begin();
-    tbb::parallel_for(Range(0, cells, 16), count);
-  }
-  SetCells out;
-  for (std::uint32_t i = 0; i < cells; ++i) {
-    if (counts[i] == 0) continue;
-    out.cells.push_back(cell_at(i));
-    out.entries += counts[i];
-  }
-  return out;
-}
 
 /// The source indices in parts of 2^16. Because no two points have the same one, a part has at most
 /// that many rows.
@@ -96,7 +40,7 @@ class SourceParts {
   std::size_t parts_;
 };
 
-/// One thread's count of a cell's entries in a set by the part of their source indices.
+/// One thread's count of a cell's rows by the part of their source indices.
 class CellParts {
  public:
   explicit CellParts(const SourceParts& parts) : counts_(parts.count()) {}
@@ -106,28 +50,32 @@ class CellParts {
     return SourceParts(store).count() * (sizeof(std::uint32_t) + sizeof(std::size_t));
   }
 
-  /// Counts the entries of a cell whose parts are `first_part` to `end_part` - 1, and forgets those
-  /// of the cell before. Throws InputError for a damaged cell.
-  template <typename Set>
-  void count(const StoreReader& store, const Set& set, std::uint32_t cell, std::size_t first_part,
-             std::size_t end_part) {
+  /// Counts the rows of a cell whose parts are `first_part` to `end_part` - 1, and forgets those of
+  /// the cell before. Throws InputError for a damaged cell.
+  void count(const StoreReader& store, const AnswerRows& answer, PointQuestion question,
+             std::uint32_t cell, std::size_t first_part, std::size_t end_part) {
     for (const std::size_t part : parts_) counts_[part] = 0;
     parts_.clear();
-    const PackedChunk<std::uint64_t> sources = store.sources(cell);
-    if (SourceParts::of(sources.minimum()) >= end_part && end_part < counts_.size()) return;
-    for_each_entry(store, set, cell, [&](std::uint64_t, std::uint32_t i) {
-      const std::size_t part = SourceParts::of(sources[i]);
+    sources_ = store.sources(cell);
+    if (SourceParts::of(sources_.minimum()) >= end_part && end_part < counts_.size()) return;
+    rows_ = answer.read(cell, question);
+    rows_.for_each([&](std::uint32_t point, std::size_t) {
+      const std::size_t part = SourceParts::of(sources_[point]);
       if (part < first_part || part >= end_part) {
-        if (part >= counts_.size()) refuse_source(store, cell, sources[i]);
+        if (part >= counts_.size()) refuse_source(store, cell, sources_[point]);
         return;
       }
       if (counts_[part]++ == 0) parts_.push_back(part);
     });
   }
 
-  /// The parts that have entries, in no particular order.
+  /// The rows of the cell that was counted last, and its source indices.
+  const CellRows& rows() const { return rows_; }
+  const PackedChunk<std::uint64_t>& sources() const { return sources_; }
+
+  /// The parts that have rows, in no particular order.
   const std::vector<std::size_t>& parts() const { return parts_; }
-  std::uint32_t entries_of(std::size_t part) const { return counts_[part]; }
+  std::uint32_t rows_of(std::size_t part) const { return counts_[part]; }
 
  private:
   [[noreturn]] static void refuse_source(const StoreReader& store, std::uint32_t cell,
@@ -139,6 +87,8 @@ class CellParts {
 
   std::vector<std::uint32_t> counts_;
   std::vector<std::size_t> parts_;
+  CellRows rows_;
+  PackedChunk<std::uint64_t> sources_;
 };
 
 /// The ranks of the rows of one part: for each, how many have a smaller source index.
@@ -193,23 +143,25 @@ void order_part(std::span<Row> rows, std::span<Row> copy) {
   std::ranges::sort(rows, {}, &Row::source);
 }
 
-/// Brings the entries of a set into the order of their source indices, for some parts of these at a
-/// time. Row: what is kept of an entry, with its `source`. All functions throw InputError for a
+/// Brings the rows of a question into the order of their source indices, for some parts of these at
+/// a time. Row: what is kept of a row, with its `source`. All functions throw InputError for a
 /// damaged cell and Interrupted when the progress asks to stop.
-template <typename Row, typename Set>
+template <typename Row>
 class GatherRows {
  public:
-  GatherRows(const StoreReader& store, const Set& set, const SetCells& in, Progress& progress)
+  GatherRows(const StoreReader& store, const AnswerRows& answer, PointQuestion question,
+             Progress& progress)
       : store_(store),
-        set_(set),
-        in_(in),
+        answer_(answer),
+        question_(question),
+        cells_(answer.cells(question)),
         progress_(progress),
         parts_(store),
         counts_(parts_.count()),
         threads_([this] { return CellParts(parts_); }) {
     for_each_cell(0, parts_.count(), [this](std::uint32_t, const CellParts& cell) {
       for (const std::size_t part : cell.parts()) {
-        std::atomic_ref(counts_[part]).fetch_add(cell.entries_of(part), std::memory_order_relaxed);
+        std::atomic_ref(counts_[part]).fetch_add(cell.rows_of(part), std::memory_order_relaxed);
       }
     });
   }
@@ -217,10 +169,10 @@ class GatherRows {
   /// Number of rows in each part.
   const std::vector<std::uint64_t>& counts() const { return counts_; }
 
-  /// Fills `rows` with the rows of parts `first` to `end` - 1, in order. rows_of(cell): returns the
-  /// function that makes a row of (source, entry, index in the cell). rows: must have the length
-  /// that counts() gives. copies: memory in which threads copy a part each, as far as there is
-  /// room.
+  /// Fills `rows` with the rows of parts `first` to `end` - 1, in order. rows_of(cell, found):
+  /// returns the function that makes a row of (source, index in the cell, index in `found`). rows:
+  /// must have the length that counts() gives. copies: memory in which threads copy a part each, as
+  /// far as there is room.
   template <typename RowsOf>
   void gather(std::size_t first, std::size_t end, std::span<Row> rows, std::span<Row> copies,
               RowsOf rows_of) {
@@ -257,12 +209,12 @@ class GatherRows {
       CellParts& parts = threads_.local();
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         throw_if_stopped(progress_);
-        parts.count(store_, set_, in_.cells[i], first, end);
-        if (!parts.parts().empty()) visit(in_.cells[i], parts);
+        parts.count(store_, answer_, question_, cells_[i], first, end);
+        if (!parts.parts().empty()) visit(cells_[i], parts);
       }
     });
     scope.begin();
-    tbb::parallel_for(Range(0, in_.cells.size()), cells);
+    tbb::parallel_for(Range(0, cells_.size()), cells);
   }
 
   /// Puts the rows of each part into its places, in any order.
@@ -274,21 +226,20 @@ class GatherRows {
       std::vector<Places>& places = of_cell.local();
       for (const std::size_t part : found.parts()) {
         Places& whole = parts[part - first];
-        const std::uint64_t count = found.entries_of(part);
+        const std::uint64_t count = found.rows_of(part);
         const std::uint64_t at =
             std::atomic_ref(whole.next).fetch_add(count, std::memory_order_relaxed);
         if (at + count > whole.end) refuse_change();
         places[part - first] = {at, at + count};
       }
-      const auto row_of = rows_of(cell);
-      const PackedChunk<std::uint64_t> sources = store_.sources(cell);
-      for_each_entry(store_, set_, cell, [&](std::uint64_t entry, std::uint32_t i) {
-        const std::uint64_t source = sources[i];
+      const auto row_of = rows_of(cell, found.rows());
+      found.rows().for_each([&](std::uint32_t point, std::size_t row) {
+        const std::uint64_t source = found.sources()[point];
         const std::size_t part = SourceParts::of(source);
         if (part < first || part >= end) return;
         Places& here = places[part - first];
         if (here.next == here.end) refuse_change();
-        rows[here.next++] = row_of(source, entry, i);
+        rows[here.next++] = row_of(source, point, row);
       });
     });
     const auto is_full = [](const Places& part) { return part.next == part.end; };
@@ -320,8 +271,9 @@ class GatherRows {
   }
 
   const StoreReader& store_;
-  const Set& set_;
-  const SetCells& in_;
+  const AnswerRows& answer_;
+  const PointQuestion question_;
+  const std::vector<std::uint32_t> cells_;
   Progress& progress_;
   const SourceParts parts_;
   std::vector<std::uint64_t> counts_;

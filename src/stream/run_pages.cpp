@@ -24,42 +24,14 @@ std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> ce
          point % cloud.cell_entries();
 }
 
-std::vector<std::uint32_t> collect_page(const PackedCloud& cloud,
-                                        std::span<const PlannedCell> cells,
-                                        const PageResult& answer, SearchResult& all) {
-  assert(answer.hits.size() == cells.size() * cloud.blocks_per_cell());
-  std::vector<std::uint32_t> with_found;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    bool any = false;
-    const auto hits = part_of_cell(answer.hits, i, cloud.blocks_per_cell());
-    const std::uint64_t first_word = std::uint64_t{cells[i].cell} * cloud.blocks_per_cell();
-    for (std::size_t block = 0; block < hits.size(); ++block) {
-      if (hits[block] == 0) continue;
-      all.hits.mark_word(first_word + block, hits[block]);
-      any = true;
-    }
-    const std::uint64_t first_entry = std::uint64_t{cells[i].cell} * cloud.cell_entries();
-    const auto poses = part_of_cell(answer.first_poses, i, cloud.cell_entries());
-    for (std::size_t entry = 0; entry < poses.size(); ++entry) {
-      if (poses[entry] == HitSet::kNever) continue;
-      all.hits.mark(first_entry + entry, poses[entry]);
-      any = true;
-    }
-    const auto clearances = part_of_cell(answer.clearances, i, cloud.cell_entries());
-    for (std::size_t entry = 0; entry < clearances.size(); ++entry) {
-      if (!clearances[entry].found()) continue;
-      all.clearances.set(first_entry + entry, clearances[entry]);
-      any = true;
-    }
-    if (any) with_found.push_back(cells[i].cell);
-  }
-  for (const ProfileFact& fact : answer.profile) {
-    const std::uint64_t entry = entry_of(cloud, cells, fact.point);
-    const auto index = static_cast<std::uint32_t>(fact.point % cloud.cell_entries());
+void offer_profile(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                   std::span<const ProfileFact> facts, ProfileSet& profile) {
+  for (const ProfileFact& fact : facts) {
     const std::uint32_t cell = cells[fact.point / cloud.cell_entries()].cell;
-    all.profile.offer(fact.pose, {fact.squared, cloud.source_of(cell, index), entry});
+    const std::uint32_t index = fact.point % cloud.cell_entries();
+    profile.offer(fact.pose,
+                  {fact.squared, cloud.source_of(cell, index), entry_of(cloud, cells, fact.point)});
   }
-  return with_found;
 }
 
 namespace {
@@ -347,33 +319,6 @@ std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> c
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();
   progress.end();
   return shared.ignored_points;
-}
-
-SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                       std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                       const Query& query, int threads, Progress& progress, StageTimes& times,
-                       SearchJournal* journal) {
-  SearchResult answer{HitSet(cloud.entry_count(), query.first_pose),
-                      ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
-                      query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
-  if (journal != nullptr) journal->restore(answer);
-  std::vector<std::uint32_t> with_found;
-  std::mutex mutex;
-  const IgnoredPoints ignored(cloud, query);
-  const CollectPage keep = [&](std::span<const PlannedCell> of, const PageResult& found) {
-    const std::vector<std::uint32_t> here = collect_page(cloud, of, found, answer);
-    if (journal != nullptr) journal->append_page(of, found, answer.profile);
-    const std::lock_guard lock(mutex);
-    with_found.insert(with_found.end(), here.begin(), here.end());
-  };
-  answer.ignored_points =
-      run_pages(cloud, cells, pages, engines, {.ignored = ignored, .threads = threads}, keep,
-                progress, times);
-  if (journal == nullptr) {
-    std::ranges::sort(with_found);
-    answer.cells = std::move(with_found);
-  }
-  return answer;
 }
 
 std::uint64_t run_pages_bytes(std::size_t pages) {

@@ -14,7 +14,6 @@
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
 #include "stream/plan.hpp"
-#include "stream/search_journal.hpp"
 
 namespace clearway {
 
@@ -22,13 +21,10 @@ namespace clearway {
 std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                        std::uint32_t point);
 
-/// Adds the answer of a page of these cells to `all`. Cells are disjoint and a block is a word, so
-/// different pages may be collected at once and in any order; the nearest points of poses are only
-/// offered. Returns the cells in which points were found. Throws InputError if the source index of
-/// such a point cannot be read.
-std::vector<std::uint32_t> collect_page(const PackedCloud& cloud,
-                                        std::span<const PlannedCell> cells,
-                                        const PageResult& answer, SearchResult& all);
+/// Offers the nearest points that were found in a page of these cells. Throws InputError if the
+/// source index of such a point cannot be read.
+void offer_profile(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+                   std::span<const ProfileFact> facts, ProfileSet& profile);
 
 /// Where the coordinates of a cell are kept outside of a page, as PageEngine::kept() says it.
 using KeptPayload = std::function<std::optional<CellPayload>(std::uint32_t cell)>;
@@ -77,27 +73,19 @@ struct PageRun {
   int threads = 0;               ///< 0: all cores
 };
 
-/// Runs the pages for callers that keep the results themselves: `collect` takes the result of each
-/// page. Returns how many points of the pages were not searched.
+/// Runs pages through engines. Pages are staged in their order into whichever slot of an engine is
+/// free, and searched, and `collect` takes the result of each. For each engine at most one thread
+/// waits for a device, or one for each slot if its pages are not alike. Progress counts points. An
+/// exception of any stage ends the run: no further page is started, those under way are finished,
+/// then it is rethrown; the same happens, with Interrupted, when the progress asks to stop. The
+/// pages must fit the slots of every engine. Returns how many points of the pages were not
+/// searched.
 std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                         std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
                         const PageRun& run, const CollectPage& collect, Progress& progress,
                         StageTimes& times);
 
-/// Runs pages through engines and returns the answer. Pages are staged in their order into
-/// whichever slot of an engine is free, searched, and their answers collected. threads: 0 for all
-/// cores. For each engine at most one thread waits for a device, or one for each slot if its pages
-/// are not alike. Progress counts points. An exception of any stage ends the run: no further page
-/// is started, those under way are finished, then it is rethrown; the same happens, with
-/// Interrupted, when the progress asks to stop. The pages must fit the slots of every engine. The
-/// journal, if there is one, keeps the answer of every page, and what it held before becomes part
-/// of the answer.
-SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                       std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                       const Query& query, int threads, Progress& progress, StageTimes& times,
-                       SearchJournal* journal = nullptr);
-
-/// Memory that run_pages() takes in addition to the engine and the answer, bytes.
+/// Memory that run_pages() takes in addition to the engine, bytes.
 std::uint64_t run_pages_bytes(std::size_t pages);
 
 }  // namespace clearway

@@ -19,7 +19,9 @@ JournalledWork journalled_work(const JournalReader& journal) {
   journal.for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {
       case JournalRecordKind::kCell:
-        ++work.cells;
+        for (const PointQuestion question : questions_in(payload)) {
+          ++work.of_questions[static_cast<std::size_t>(question)];
+        }
         break;
       case JournalRecordKind::kFinishedPoses: {
         const std::uint64_t first = payload.take_count();
@@ -33,6 +35,7 @@ JournalledWork journalled_work(const JournalReader& journal) {
         payload.refuse("of an unknown kind");
     }
   });
+  work.cells = work.of_questions[static_cast<std::size_t>(PointQuestion::kHits)];
   // With another number of threads the poses are divided differently, so some may have been
   // finished twice.
   std::sort(poses.begin(), poses.end());
@@ -50,44 +53,8 @@ namespace {
 
 using enum JournalRecordKind;
 
-constexpr std::uint64_t kMostCountBytes = 10;
-
 /// Greatest number of a profile's facts in one record.
 constexpr std::size_t kMostFacts = 4096;
-
-std::uint64_t bit_of(std::size_t index) { return std::uint64_t{1} << index; }
-
-/// Puts the words that are not 0, each with its distance from the one before. For each of its
-/// points put_point(i) follows.
-template <typename WordAt, typename PutPoint>
-void put_words(JournalRecord& record, std::size_t words, WordAt word_at, PutPoint put_point) {
-  std::uint64_t count = 0;
-  for (std::size_t word = 0; word < words; ++word) count += word_at(word) != 0;
-  record.put_count(count);
-  std::size_t next = 0;
-  for (std::size_t word = 0; word < words; ++word) {
-    const std::uint64_t bits = word_at(word);
-    if (bits == 0) continue;
-    record.put_count(word - next);
-    record.put(bits);
-    for_each_bit(bits, [&](std::uint32_t i) { put_point(word * kBlockPoints + i); });
-    next = word + 1;
-  }
-}
-
-void put_clearances(JournalRecord& record, std::span<const Clearance> clearances) {
-  const auto word_at = [&](std::size_t word) {
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; i < kBlockPoints; ++i) {
-      if (clearances[word * kBlockPoints + i].found()) bits |= bit_of(i);
-    }
-    return bits;
-  };
-  put_words(record, clearances.size() / kBlockPoints, word_at, [&](std::size_t point) {
-    record.put(clearances[point].squared);
-    record.put_count(clearances[point].pose);
-  });
-}
 
 }  // namespace
 
@@ -97,11 +64,11 @@ SearchJournal::SearchJournal(std::filesystem::path path, JournalIdentity identit
     : cloud_(cloud),
       query_(query),
       read_(read),
-      finished_cells_(cloud.cells().size()),
       finished_poses_(query.poses.size()),
       path_(std::move(path)),
       identity_(std::move(identity)),
-      interval_seconds_(interval_seconds) {
+      interval_seconds_(interval_seconds),
+      rows_(cloud, query, *this) {
   note_finished();
 }
 
@@ -110,7 +77,7 @@ bool SearchJournal::poses_finished(std::uint32_t first, std::uint32_t count) con
   return std::find(begin, begin + count, false) == begin + count;
 }
 
-void SearchJournal::append(JournalRecord& record) {
+std::uint64_t SearchJournal::append(JournalRecord& record) {
   {
     const std::lock_guard lock(mutex_);
     if (!writer_) {
@@ -119,7 +86,12 @@ void SearchJournal::append(JournalRecord& record) {
                           : JournalWriter::create(path_, identity_, interval_seconds_));
     }
   }
-  writer_->append(record);
+  return writer_->append(record);
+}
+
+JournalPayload SearchJournal::read(std::uint64_t place, std::vector<std::byte>& bytes) const {
+  const bool is_earlier = read_ != nullptr && place < read_->whole_bytes();
+  return read_record(is_earlier ? read_->file() : writer_->file(), place, bytes);
 }
 
 bool SearchJournal::is_in_place() const {
@@ -148,27 +120,6 @@ void SearchJournal::append_profile(std::span<const PlannedCell> cells,
       record.put_count(fact->pose);
       record.put(fact->squared);
       record.put_count(entry_of(cloud_, cells, fact->point));
-    }
-    append(record);
-  }
-}
-
-void SearchJournal::append_page(std::span<const PlannedCell> cells, const PageResult& answer,
-                                const ProfileSet& profile) {
-  append_profile(cells, answer.profile, profile);
-  JournalRecord record;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto hits = part_of_cell(answer.hits, i, cloud_.blocks_per_cell());
-    const auto poses = part_of_cell(answer.first_poses, i, cloud_.cell_entries());
-    record.put(kCell);
-    record.put_count(cells[i].cell);
-    put_words(
-        record, hits.size(), [&](std::size_t word) { return hits[word]; },
-        [&](std::size_t point) {
-          if (!poses.empty()) record.put_count(poses[point]);
-        });
-    if (query_.clearance > 0) {
-      put_clearances(record, part_of_cell(answer.clearances, i, cloud_.cell_entries()));
     }
     append(record);
   }
@@ -210,27 +161,41 @@ void SearchJournal::append_finished_poses(std::uint32_t first, std::uint32_t cou
 }
 
 std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& query, int threads) {
-  constexpr std::uint64_t kWordBytes = kMostCountBytes + sizeof(std::uint64_t);
   constexpr std::uint64_t kPoseBytes = 5;
-  const bool clearance = query.clearance > 0;
-  const std::uint64_t block =
-      kWordBytes + (query.first_pose ? kBlockPoints * kPoseBytes : 0) +
-      (clearance ? kWordBytes + kBlockPoints * (sizeof(double) + kPoseBytes) : 0);
-  constexpr std::uint64_t kRecordBytes = 64;
   // A vector that grows exists twice for a moment, and the new one is twice as large.
   const std::uint64_t of_profile =
       query.profile > 0
-          ? kMostFacts * (sizeof(void*) + 3 * (sizeof(double) + kPoseBytes + kMostCountBytes))
+          ? kMostFacts *
+                (sizeof(void*) + 3 * (sizeof(double) + kPoseBytes + JournalRecord::kMostCountBytes))
           : 0;
-  const std::uint64_t record =
-      std::max(3 * (kRecordBytes + cloud.blocks_per_cell() * block), of_profile);
-  return static_cast<std::uint64_t>(threads) * record +
-         (cloud.cells().size() + query.poses.size()) / 8;
+  const std::uint64_t record = std::max(AnswerRows::most_cell_bytes(cloud, query), of_profile);
+  return static_cast<std::uint64_t>(threads) * record + query.poses.size() / 8;
+}
+
+CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& profile,
+                        SearchJournal* journal) {
+  return [&cloud, &rows, &profile, journal](std::span<const PlannedCell> cells,
+                                            const PageResult& found) {
+    offer_profile(cloud, cells, found.profile, profile);
+    if (journal != nullptr) journal->append_profile(cells, found.profile, profile);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const CellRows hits = hit_rows(part_of_cell(found.hits, i, cloud.blocks_per_cell()),
+                                     part_of_cell(found.first_poses, i, cloud.cell_entries()));
+      if (!rows.asks(PointQuestion::kClearances)) {
+        rows.add(cells[i].cell, {{PointQuestion::kHits, hits}});
+        continue;
+      }
+      const CellRows clearances =
+          clearance_rows(part_of_cell(found.clearances, i, cloud.cell_entries()));
+      rows.add(cells[i].cell,
+               {{PointQuestion::kHits, hits}, {PointQuestion::kClearances, clearances}});
+    }
+  };
 }
 
 }  // namespace clearway
 
-// Reads what a journal's file holds: checks it record by record and adds it to an answer.
+// Reads what a journal's file holds: checks it record by record.
 
 namespace clearway {
 namespace {
@@ -248,40 +213,34 @@ struct TakenPoses {
   std::uint64_t first, count;
 };
 
-std::uint32_t take_below(JournalPayload& payload, std::uint64_t end) {
-  const std::uint64_t pose = payload.take_count();
-  if (pose >= end) payload.refuse("a pose past the trajectory's end");
-  return static_cast<std::uint32_t>(pose);
-}
-
 }  // namespace
 
 void SearchJournal::note_finished() {
   if (read_ == nullptr) return;
-  replay_all({});  // checks all records
+  replay(nullptr, nullptr);  // checks all other records
   read_->for_each([this](JournalPayload payload) {
-    const auto kind = payload.take<JournalRecordKind>();
-    if (kind == kCell) finished_cells_[take_cell(payload)] = true;
+    JournalPayload rest = payload;
+    const auto kind = rest.take<JournalRecordKind>();
+    if (kind == kCell) rows_.note(payload, payload.place());
     if (kind == kFinishedPoses) {
-      const TakenPoses poses(payload, finished_poses_.size());
+      const TakenPoses poses(rest, finished_poses_.size());
       const auto begin = finished_poses_.begin() + static_cast<std::ptrdiff_t>(poses.first);
       std::fill_n(begin, poses.count, true);
     }
   });
 }
 
-void SearchJournal::replay_all(const Target& target) const {
+void SearchJournal::replay(HitSet* hits, ProfileSet* profile) const {
   if (read_ == nullptr) return;
   read_->for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {
       case kCell:
-        replay_cell(payload, target.hits, target.clearances);
-        break;
+        return;
       case kProfile:
-        replay_profile(payload, target.profile);
+        replay_profile(payload, profile);
         break;
       case kMarks:
-        replay_marks(payload, target.hits);
+        replay_marks(payload, hits);
         break;
       case kFinishedPoses:
         TakenPoses(payload, query_.poses.size());
@@ -293,18 +252,10 @@ void SearchJournal::replay_all(const Target& target) const {
   });
 }
 
-std::uint32_t SearchJournal::take_cell(JournalPayload& payload) const {
-  const std::uint64_t cell = payload.take_count();
-  if (cell >= cloud_.cells().size()) payload.refuse("a cell that the store does not have");
-  return static_cast<std::uint32_t>(cell);
-}
-
 std::uint32_t SearchJournal::take_pose(JournalPayload& payload) const {
-  return take_below(payload, query_.poses.size());
-}
-
-std::uint32_t SearchJournal::take_number(JournalPayload& payload) const {
-  return take_below(payload, BodyNumbers(query_).end(query_.poses.size()));
+  const std::uint64_t pose = payload.take_count();
+  if (pose >= query_.poses.size()) payload.refuse("a pose past the trajectory's end");
+  return static_cast<std::uint32_t>(pose);
 }
 
 /// Takes the bits of a word, which must all be points of the cloud.
@@ -323,38 +274,6 @@ std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t 
 /// Whether this can be the square of a distance, which stands below 0 for a point inside solids.
 bool SearchJournal::is_square(double squared) const {
   return squared >= 0 || (has_solids(query_) && squared < 0 && std::isfinite(squared));
-}
-
-void SearchJournal::replay_cell(JournalPayload& payload, HitSet* hits,
-                                ClearanceSet* clearances) const {
-  const std::uint64_t cell_word = std::uint64_t{take_cell(payload)} * cloud_.blocks_per_cell();
-  const auto for_each_word = [&](auto visit) {
-    std::uint64_t next = 0;
-    for (std::uint64_t words = payload.take_count(); words > 0; --words) {
-      const std::uint64_t skipped = payload.take_count();
-      if (skipped >= cloud_.blocks_per_cell() - next) payload.refuse("a block past its cell's end");
-      const std::uint64_t word = cell_word + next + skipped;
-      visit(word, take_points(payload, word));
-      next += skipped + 1;
-    }
-  };
-  for_each_word([&](std::uint64_t word, std::uint64_t bits) {
-    if (hits != nullptr) hits->mark_word(word, bits);
-    if (!query_.first_pose) return;
-    for_each_bit(bits, [&](std::uint32_t i) {
-      const std::uint32_t number = take_number(payload);
-      if (hits != nullptr) hits->mark(word * kBlockPoints + i, number);
-    });
-  });
-  if (!(query_.clearance > 0)) return;
-  for_each_word([&](std::uint64_t word, std::uint64_t bits) {
-    for_each_bit(bits, [&](std::uint32_t i) {
-      const auto squared = payload.take<double>();
-      const Clearance clearance{squared, take_number(payload)};
-      if (!(is_square(squared) && clearance.found())) payload.refuse("a distance that is none");
-      if (clearances != nullptr) clearances->set(word * kBlockPoints + i, clearance);
-    });
-  });
 }
 
 void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {

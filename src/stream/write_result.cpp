@@ -220,8 +220,9 @@ constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
 /// Least memory with which one thread gathers.
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
 
-std::uint64_t thread_bytes(const StoreReader& store) {
-  return CellParts::most_bytes(store) + 16 * SourceParts(store).count();
+std::uint64_t thread_bytes(const StoreReader& store, const Query& query) {
+  return CellParts::most_bytes(store) + 16 * SourceParts(store).count() +
+         AnswerRows::most_cell_bytes(store, query);
 }
 
 /// The number of rows for which another thread pays.
@@ -236,11 +237,12 @@ struct WritePlan {
 };
 
 template <typename Row>
-WritePlan plan_of(const StoreReader& store, std::uint64_t table_rows, std::uint64_t memory_bytes) {
+WritePlan plan_of(const StoreReader& store, const Query& query, std::uint64_t table_rows,
+                  std::uint64_t memory_bytes) {
   const int threads = static_cast<int>(std::min<std::uint64_t>(
       tbb::this_task_arena::max_concurrency(), 1 + table_rows / kRowsOfThread));
-  const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store)) - kWriterBytes;
-  const std::uint64_t for_thread = thread_bytes(store);
+  const std::uint64_t left = std::max(memory_bytes, least_write_bytes(store, query)) - kWriterBytes;
+  const std::uint64_t for_thread = thread_bytes(store, query);
   WritePlan plan{};
   plan.pieces = std::clamp<std::uint64_t>(left / 4 / kPieceBytes, 1, 2 * threads);
   plan.threads = static_cast<int>(std::clamp<std::uint64_t>(left / 8 / for_thread, 1, threads));
@@ -264,16 +266,17 @@ std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_
   return end;
 }
 
-/// Writes a set that has entries in passes by write(rows), each with a multiple of kEncodedRows
-/// rows except the last.
-template <typename Row, typename Set, typename RowsOf, typename Write>
-void write_set(const StoreReader& store, const Set& set, const SetCells& in, const WritePlan& plan,
-               RowMemory& memory, Progress& progress, RowsOf rows_of, Write write) {
+/// Writes the rows of a question that has some in passes by write(rows), each with a multiple of
+/// kEncodedRows rows except the last.
+template <typename Row, typename RowsOf, typename Write>
+void write_found(const StoreReader& store, const AnswerRows& answer, PointQuestion question,
+                 const WritePlan& plan, RowMemory& memory, Progress& progress, RowsOf rows_of,
+                 Write write) {
   tbb::task_arena arena(plan.threads);
-  std::optional<GatherRows<Row, Set>> gather;
-  arena.execute([&] { gather.emplace(store, set, in, progress); });
+  std::optional<GatherRows<Row>> gather;
+  arena.execute([&] { gather.emplace(store, answer, question, progress); });
   const std::vector<std::uint64_t>& counts = gather->counts();
-  const std::size_t most = std::min<std::uint64_t>(plan.rows, in.entries);
+  const std::size_t most = std::min<std::uint64_t>(plan.rows, answer.points(question));
   const std::uint64_t largest =
       std::min(SourceParts::kMostRows, *std::max_element(counts.begin(), counts.end()));
   const std::uint64_t copied = plan.copies ? plan.threads * largest : 0;
@@ -295,22 +298,11 @@ void write_set(const StoreReader& store, const Set& set, const SetCells& in, con
   }
 }
 
-/// Where the cells with rows of each table of points are.
-struct TableCells {
-  TableCells(const StoreReader& store, const SearchResult& answer, const ResultHeader& header)
-      : collisions(cells_of(store, answer.hits, answer.cells)),
-        clearances(header.clearance > 0 ? cells_of(store, answer.clearances, answer.cells)
-                                        : SetCells()),
-        near(answer.near ? cells_of(store, *answer.near) : SetCells()) {}
-
-  SetCells collisions, clearances, near;
-};
-
 /// Brings the points of a result into the order of their source indices, and hands out the rows of
 /// each table in passes, with the plan by which they were gathered.
 class ResultRows {
  public:
-  ResultRows(const StoreReader& store, const SearchResult& answer, const ResultHeader& header,
+  ResultRows(const StoreReader& store, const AnswerRows& answer, const ResultHeader& header,
              std::uint64_t memory_bytes, RowMemory& memory, Progress& progress)
       : store_(store),
         answer_(answer),
@@ -320,100 +312,111 @@ class ResultRows {
         progress_(progress) {}
 
   const RowMeaning& meaning() const { return meaning_; }
+  std::uint64_t count(PointQuestion question) const { return answer_.points(question); }
 
-  /// Hands out the colliding points, as DeepRow where their depths are known and otherwise as
+  /// Hands out the colliding points, as DeepRow where depths are asked for and otherwise as
   /// CollisionRow.
   template <typename Take>
-  void for_collisions(const SetCells& in, Take take) {
-    const HitSet& hits = answer_.hits;
-    const bool first_pose = hits.has_first_pose();
-    const LastPoses* last_poses = answer_.last_poses ? &*answer_.last_poses : nullptr;
-    const HitSet* certain = answer_.certain ? &*answer_.certain : nullptr;
-    const auto rows_of = [&](std::uint32_t cell) {
-      return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
-                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
-        const std::uint32_t touched = first_pose ? hits.first_pose(entry) : 0;
+  void for_collisions(Take take) {
+    const LastPoses last_poses(answer_.query());
+    const auto rows_of = [&](std::uint32_t cell, const CellRows& hits) {
+      return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell),
+              last = found_in(cell, PointQuestion::kLast),
+              certain = found_in(cell, PointQuestion::kCertain)](std::uint64_t source,
+                                                                 std::uint32_t i, std::size_t row) {
+        const std::uint32_t touched = hits.poses.empty() ? 0 : hits.poses[row];
         const std::uint32_t first = meaning_.numbers.pose_of(touched);
-        const std::uint32_t last = last_poses != nullptr ? last_poses->at(entry, first) : first;
-        const bool is_certain = certain != nullptr && certain->contains(entry);
-        return CollisionRow{source,     {q[0][i], q[1][i], q[2][i]}, touched, last, is_certain,
+        const std::size_t backward = last.row_of(i);
+        return CollisionRow{source,
+                            {q[0][i], q[1][i], q[2][i]},
+                            touched,
+                            backward == RowFinder::kNone
+                                ? first
+                                : last_poses.of(first, last.rows().poses[backward]),
+                            certain.row_of(i) != RowFinder::kNone,
                             class_at(i)};
       };
     };
-    if (!answer_.depths) return gather<CollisionRow>(hits, in, rows_of, take);
+    if (!meaning_.header.depth) return gather<CollisionRow>(PointQuestion::kHits, rows_of, take);
     gather<DeepRow>(
-        hits, in,
-        [&](std::uint32_t cell) {
-          return [&, row_of = rows_of(cell)](std::uint64_t source, std::uint64_t entry,
-                                             std::uint32_t i) {
-            return DeepRow{row_of(source, entry, i), answer_.depths->at(hits, entry)};
+        PointQuestion::kHits,
+        [&](std::uint32_t cell, const CellRows& hits) {
+          return [row_of = rows_of(cell, hits), depths = found_in(cell, PointQuestion::kDepths)](
+                     std::uint64_t source, std::uint32_t i, std::size_t row) {
+            const std::size_t depth = depths.row_of(i);
+            const CellRows& found = depths.rows();
+            return DeepRow{row_of(source, i, row),
+                           depth == RowFinder::kNone
+                               ? Depth()
+                               : Depth{found.distances[depth], found.sources[depth]}};
           };
         },
         take);
   }
 
   template <typename Take>
-  void for_near(const SetCells& in, Take take) {
-    const HitSet& near = *answer_.near;
-    const bool first_pose = near.has_first_pose();
-    const auto rows_of = [&](std::uint32_t cell) {
+  void for_near(Take take) {
+    const auto rows_of = [&](std::uint32_t cell, const CellRows& near) {
       return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
-                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
+                 std::uint64_t source, std::uint32_t i, std::size_t row) {
         return NearRow{source,
                        {q[0][i], q[1][i], q[2][i]},
-                       first_pose ? near.first_pose(entry) : 0,
+                       near.poses.empty() ? 0 : near.poses[row],
                        class_at(i)};
       };
     };
-    gather<NearRow>(near, in, rows_of, take);
+    gather<NearRow>(PointQuestion::kNear, rows_of, take);
   }
 
   template <typename Take>
-  void for_clearances(const SetCells& in, Take take) {
-    const ClearanceSet& clearances = answer_.clearances;
-    const auto rows_of = [&](std::uint32_t cell) {
+  void for_clearances(Take take) {
+    const auto rows_of = [&](std::uint32_t cell, const CellRows& clearances) {
       return [&, q = store_.coordinates(cell), class_at = classes_of(store_, cell)](
-                 std::uint64_t source, std::uint64_t entry, std::uint32_t i) {
-        const Clearance clearance = clearances.at(entry);
+                 std::uint64_t source, std::uint32_t i, std::size_t row) {
         return ClearanceRow{source,
-                            signed_root(clearance.squared),
+                            signed_root(clearances.distances[row]),
                             {q[0][i], q[1][i], q[2][i]},
-                            clearance.pose,
+                            clearances.poses[row],
                             class_at(i)};
       };
     };
-    gather<ClearanceRow>(clearances, in, rows_of, take);
+    gather<ClearanceRow>(PointQuestion::kClearances, rows_of, take);
   }
 
  private:
-  template <typename Row, typename Set, typename RowsOf, typename Take>
-  void gather(const Set& set, const SetCells& in, RowsOf rows_of, Take take) {
-    if (in.entries == 0) return;  // a store without points has no parts to plan for
-    const WritePlan plan = plan_of<Row>(store_, in.entries, memory_bytes_);
-    write_set<Row>(store_, set, in, plan, memory_, progress_, rows_of,
-                   [&](std::span<const Row> rows) { take(rows, plan); });
+  RowFinder found_in(std::uint32_t cell, PointQuestion question) const {
+    return RowFinder(answer_.read(cell, question));
+  }
+
+  template <typename Row, typename RowsOf, typename Take>
+  void gather(PointQuestion question, RowsOf rows_of, Take take) {
+    if (count(question) == 0) return;  // a store without points has no parts to plan for
+    const WritePlan plan = plan_of<Row>(store_, answer_.query(), count(question), memory_bytes_);
+    write_found<Row>(store_, answer_, question, plan, memory_, progress_, rows_of,
+                     [&](std::span<const Row> rows) { take(rows, plan); });
   }
 
   const StoreReader& store_;
-  const SearchResult& answer_;
+  const AnswerRows& answer_;
   const RowMeaning meaning_;
   std::uint64_t memory_bytes_;
   RowMemory& memory_;
   Progress& progress_;
 };
 
-TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
+TableSummary write_tables(const StoreReader& store, const FoundAnswer& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
                           std::uint64_t memory_bytes, Progress& progress,
                           std::span<const double> chainage, const ResultFindings& findings) {
   TableSummary summary;
-  const TableCells in(store, answer, header);
-  ResultWriter writer(path, header, in.collisions.entries, in.clearances.entries, in.near.entries,
-                      answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
-  progress.begin("write", in.collisions.entries + in.clearances.entries + in.near.entries,
-                 "points");
   RowMemory memory;
-  ResultRows rows(store, answer, header, memory_bytes, memory, progress);
+  ResultRows rows(store, *answer.rows, header, memory_bytes, memory, progress);
+  const std::uint64_t collisions = rows.count(PointQuestion::kHits);
+  const std::uint64_t clearances = rows.count(PointQuestion::kClearances);
+  const std::uint64_t near = rows.count(PointQuestion::kNear);
+  ResultWriter writer(path, header, collisions, clearances, near,
+                      answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
+  progress.begin("write", collisions + clearances + near, "points");
   const auto write = [&]<typename Rows, typename Row>(std::span<const Row> some,
                                                       const WritePlan& plan, Rows*) {
     write_rows<Rows>(
@@ -421,10 +424,10 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
         [&](std::span<const Row> piece) { return encode_rows(writer, rows.meaning(), piece); },
         [&](const auto& piece) { add_summary(piece.summary, summary); });
   };
-  rows.for_collisions(in.collisions, [&](const auto& some, const auto& plan) {
+  rows.for_collisions([&](const auto& some, const auto& plan) {
     write(some, plan, static_cast<Collisions*>(nullptr));
   });
-  rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto& plan) {
+  rows.for_clearances([&](std::span<const ClearanceRow> some, const auto& plan) {
     write(some, plan, static_cast<Clearances*>(nullptr));
   });
   if (header.profile > 0) {
@@ -434,8 +437,8 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
                   summarise(some, summary, first_pose);
                 });
   }
-  if (answer.near) {
-    rows.for_near(in.near, [&](std::span<const NearRow> some, const auto& plan) {
+  if (header.budget) {
+    rows.for_near([&](std::span<const NearRow> some, const auto& plan) {
       write(some, plan, static_cast<Nearby*>(nullptr));
     });
   }
@@ -450,7 +453,7 @@ TableSummary write_tables(const StoreReader& store, const SearchResult& answer,
 
 }  // namespace
 
-TableSummary write_result(const StoreReader& store, const SearchResult& answer,
+TableSummary write_result(const StoreReader& store, const FoundAnswer& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
                           std::uint64_t memory_bytes, Progress& progress,
                           std::span<const double> chainage, int threads,
@@ -461,7 +464,7 @@ TableSummary write_result(const StoreReader& store, const SearchResult& answer,
   });
 }
 
-void fill_tables(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+void fill_tables(const StoreReader& store, FoundAnswer answer, const ResultHeader& header,
                  std::uint64_t memory_bytes, Progress& progress, std::span<const double> chainage,
                  int threads, RowMemory& memory, ResultTables& tables) {
   // Sets the next rows of a table that has `all` of them in the end.
@@ -480,23 +483,23 @@ void fill_tables(const StoreReader& store, SearchResult answer, const ResultHead
   };
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   ThreadLimit(threads).run([&] {
-    const TableCells in(store, answer, header);
-    ResultRows rows(store, answer, header, memory_bytes, memory, progress);
+    ResultRows rows(store, *answer.rows, header, memory_bytes, memory, progress);
     std::uint64_t collisions = 0, clearances = 0, near = 0;
-    rows.for_collisions(in.collisions, [&](const auto& some, const auto&) {
-      keep(rows.meaning(), some, in.collisions.entries, collisions, tables.collisions);
+    rows.for_collisions([&](const auto& some, const auto&) {
+      keep(rows.meaning(), some, rows.count(PointQuestion::kHits), collisions, tables.collisions);
     });
-    rows.for_clearances(in.clearances, [&](std::span<const ClearanceRow> some, const auto&) {
-      keep(rows.meaning(), some, in.clearances.entries, clearances, tables.clearances);
+    rows.for_clearances([&](std::span<const ClearanceRow> some, const auto&) {
+      keep(rows.meaning(), some, rows.count(PointQuestion::kClearances), clearances,
+           tables.clearances);
     });
     if (header.profile > 0) {
       for_profile(
           store, answer.profile, chainage, false, progress,
           [&](const ProfileRows& some, std::uint64_t) { append_rows(some, tables.profile); });
     }
-    if (answer.near) {
-      rows.for_near(in.near, [&](std::span<const NearRow> some, const auto&) {
-        keep(rows.meaning(), some, in.near.entries, near, tables.near);
+    if (header.budget) {
+      rows.for_near([&](std::span<const NearRow> some, const auto&) {
+        keep(rows.meaning(), some, rows.count(PointQuestion::kNear), near, tables.near);
       });
     }
   });
@@ -530,9 +533,9 @@ void write_tables(const ResultTables& tables, const ResultHeader& header,
   writer.finish(findings);
 }
 
-std::uint64_t least_write_bytes(const StoreReader& store) {
+std::uint64_t least_write_bytes(const StoreReader& store, const Query& query) {
   // The rows of all parts are counted once, and once again while they are put in place.
-  return kWriterBytes + kPieceBytes + std::max(kLeastThreadBytes, thread_bytes(store)) +
+  return kWriterBytes + kPieceBytes + std::max(kLeastThreadBytes, thread_bytes(store, query)) +
          24 * SourceParts(store).count() +
          kLeastRows * std::max(sizeof(CollisionRow), sizeof(ClearanceRow));
 }

@@ -15,6 +15,7 @@
 #include "core/util/tsan_annotations.hpp"
 #include "io/result/result.hpp"
 #include "io/store/store_reader.hpp"
+#include "stream/answer_rows.hpp"
 
 namespace clearway {
 
@@ -121,7 +122,7 @@ std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
 /// if the rows exceed them, it makes several passes over the cells that have any, each for the next
 /// range of source indices. threads: 0 for all cores. Throws InputError for a damaged cell,
 /// ResourceError for a full disk, Interrupted when the progress asks to stop.
-TableSummary write_result(const StoreReader& store, const SearchResult& answer,
+TableSummary write_result(const StoreReader& store, const FoundAnswer& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
                           std::uint64_t memory_bytes, Progress& progress,
                           std::span<const double> chainage = {}, int threads = 0,
@@ -162,7 +163,7 @@ class RowMemory {
 /// `memory_bytes`, but no less than least_write_bytes(), besides the tables themselves; rows are
 /// ordered in `memory`. Throws InputError for a damaged cell, Interrupted when the progress asks to
 /// stop.
-void fill_tables(const StoreReader& store, SearchResult answer, const ResultHeader& header,
+void fill_tables(const StoreReader& store, FoundAnswer answer, const ResultHeader& header,
                  std::uint64_t memory_bytes, Progress& progress, std::span<const double> chainage,
                  int threads, RowMemory& memory, ResultTables& tables);
 
@@ -173,7 +174,7 @@ TableSummary summary_of(const ResultTables& tables);
 void write_tables(const ResultTables& tables, const ResultHeader& header,
                   const ResultFindings& findings, const std::filesystem::path& path);
 
-/// The least memory in which write_result() works, bytes.
-std::uint64_t least_write_bytes(const StoreReader& store);
+/// The least memory in which write_result() writes what a query asks for, bytes.
+std::uint64_t least_write_bytes(const StoreReader& store, const Query& query);
 
 }  // namespace clearway

@@ -82,21 +82,26 @@ TEST_CASE("the nearest free points are those of all pairs") {
     const MemoryCloud cloud(
         scene.points, scene.classes, scene.quantisation,
         {.cell_points = seed % 2 == 0 ? 64U : 256U, .bucket_points = seed % 3 == 0 ? 128U : 0U});
-    HitSet hits(cloud.entry_count(), false), below(cloud.entry_count(), false);
+    HitSet hits(cloud.entry_count(), false);
+    std::vector<std::uint64_t> taken(cloud.entry_count() / kBlockPoints);
     for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
       if (!cloud.is_used(entry)) continue;
-      if (scene.collides[cloud.source(entry)]) hits.mark(entry);
-      if (scene.below_floor[cloud.source(entry)]) below.mark(entry);
+      const bool collides = scene.collides[cloud.source(entry)];
+      if (collides) hits.mark(entry);
+      if (collides || (scene.has_floor && scene.below_floor[cloud.source(entry)])) {
+        taken[entry / kBlockPoints] |= std::uint64_t{1} << entry % kBlockPoints;
+      }
     }
     const EnvironmentTree tree(cloud, 1);
     FreePoints free(tree);
     const IgnoredPoints ignored(cloud, scene.query);
     for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
-      free.add_cell(cell, hits, scene.has_floor ? &below : nullptr, ignored);
+      const std::size_t blocks = cloud.blocks_per_cell();
+      free.add_cell(cell, std::span(taken).subspan(cell * blocks, blocks), ignored);
     }
     free.finish();
     NearestFree nearest(tree, free);
-    DepthSet depths(hits, cloud.entry_count());
+    std::vector<Depth> depths(cloud.entry_count());
     std::array<Depth, kBlockPoints> found;
     for (std::uint64_t word = 0; word < cloud.entry_count() / kBlockPoints; ++word) {
       if (hits.word(word) == 0) continue;
@@ -105,13 +110,13 @@ TEST_CASE("the nearest free points are those of all pairs") {
                      found);
       for (std::uint32_t i = 0; i < kBlockPoints; ++i) {
         const std::uint64_t entry = word * kBlockPoints + i;
-        if (hits.contains(entry)) depths.set(hits, entry, found[i]);
+        if (hits.contains(entry)) depths[entry] = found[i];
       }
     }
     for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
       if (!hits.contains(entry)) continue;
       const Depth expected = scene.by_hand(cloud.source(entry));
-      const Depth& depth = depths.at(hits, entry);
+      const Depth& depth = depths[entry];
       ++compared;
       without += expected.source == Depth::kNoPoint;
       if (depth.source == expected.source &&
@@ -130,12 +135,11 @@ TEST_CASE("the nearest free points are those of all pairs") {
 TEST_CASE("a damaged cell is reported while the nearest free points are searched") {
   const std::vector<Quantum> points{{0, 0, 0}, {1, 0, 0}};
   MemoryCloud cloud(points, {{0.01, 0.01, 0.01}, {0, 0, 0}});
-  HitSet hits(cloud.entry_count(), false);
-  hits.mark(0);
+  const std::vector<std::uint64_t> taken{1};
   const EnvironmentTree tree(cloud, 1);
   FreePoints free(tree);
   const QueryParameters query;
-  free.add_cell(0, hits, nullptr, IgnoredPoints(cloud, query));
+  free.add_cell(0, taken, IgnoredPoints(cloud, query));
   free.finish();
   cloud.damage(0);
   std::array<Depth, kBlockPoints> found;

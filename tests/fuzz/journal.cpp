@@ -9,6 +9,7 @@
 #include "memory_file.hpp"
 #include "stream/search_journal.hpp"
 #include "support/clouds.hpp"
+#include "support/engines/answer_sets.hpp"
 #include "support/memory_cloud.hpp"
 
 using namespace clearway;
@@ -89,11 +90,10 @@ bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
 }
 
 SearchResult restored(const SearchJournal& journal, const Query& query) {
-  SearchResult answer{HitSet(cloud().entry_count(), query.first_pose),
-                      ClearanceSet(query.clearance > 0 ? cloud().entry_count() : 0),
-                      query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
-  journal.restore(answer);
-  return answer;
+  SearchResult answer = empty_result(cloud(), query);
+  journal.restore(answer.hits);
+  if (query.profile > 0) journal.restore(answer.profile);
+  return result_of(journal.rows(), cloud(), std::move(answer.profile));
 }
 
 /// Restores a journal that could be opened and continues from it; nothing of that may be refused.
@@ -101,7 +101,9 @@ void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJ
            const Query& query) {
   const SearchResult before = restored(journal, query);
   check_result(before, query);
-  for (std::uint32_t cell = 0; cell < cloud().cells().size(); ++cell) journal.cell_finished(cell);
+  for (std::uint32_t cell = 0; cell < cloud().cells().size(); ++cell) {
+    journal.rows().answered(cell, PointQuestion::kHits);
+  }
   journal.append_finished_poses(7, 2);
   const JournalReader again(path);
   require(again.torn().empty() && again.records() == read.records() + 1);

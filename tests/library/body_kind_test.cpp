@@ -8,6 +8,7 @@
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
 #include "support/catch.hpp"
+#include "support/engines/answer_sets.hpp"
 #include "support/engines/host_sweep.hpp"
 
 using namespace clearway;
@@ -61,20 +62,20 @@ std::unique_ptr<PageEngineKind> host_kind(const StoreReader& store, const Query&
   return std::make_unique<BodyKind>(store, query, std::move(queries), std::move(kinds));
 }
 
-SearchResult answer_of(const Vehicle& vehicle, const StoreReader& store, PageEngineKind& kind,
-                       const std::string& journal) {
-  std::optional<SearchJournal> opened;
+SearchResult answer_of(const Vehicle& vehicle, const StoreReader& store, PageEngineKind& kind) {
   NoProgress progress;
   SearchReport report;
   const MessageCallback silent;
   const MessageLog log(silent, report.warnings);
-  return search_pages(store, vehicle.query, std::uint64_t{1} << 30, kind, nullptr,
-                      {.open_journal = [&]() -> SearchJournal* {
-                        return &opened.emplace(vehicle.folder / journal, JournalIdentity{}, nullptr,
-                                               store, vehicle.query, 1e9);
-                      }},
-                      progress, report, log)
-      .result;
+  SearchResult answer = empty_result(store, vehicle.query);
+  search_pages(store,
+               {.query = vehicle.query,
+                .memory_bytes = std::uint64_t{1} << 30,
+                .kind = kind,
+                .collect = [&](std::span<const PlannedCell> cells,
+                               const PageResult& page) { add_page(store, cells, page, answer); }},
+               {}, progress, report, log);
+  return answer;
 }
 
 /// Checks that both searches give the same result. Returns how many points collide.
@@ -83,8 +84,8 @@ std::uint64_t check_same(const Vehicle& vehicle) {
   const SearchOptions options{.threads = 2};
   const auto on_cpu = cpu_body_kind(store, vehicle.query, options);
   const auto on_host = host_kind(store, vehicle.query, options);
-  const SearchResult expected = answer_of(vehicle, store, *on_cpu, "cpu");
-  const SearchResult found = answer_of(vehicle, store, *on_host, "host");
+  const SearchResult expected = answer_of(vehicle, store, *on_cpu);
+  const SearchResult found = answer_of(vehicle, store, *on_host);
   const bool first_pose = vehicle.query.first_pose, clearance = vehicle.query.clearance > 0;
   for (std::uint64_t entry = 0; entry < store.entry_count(); ++entry) {
     REQUIRE(found.hits.contains(entry) == expected.hits.contains(entry));

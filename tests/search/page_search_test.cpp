@@ -6,6 +6,7 @@
 
 #include "clearway/error.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "stream/search_journal.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
@@ -58,17 +59,25 @@ class Line {
 
   /// Runs the search and returns the number of hits.
   std::uint64_t run() {
-    const auto open = [&]() -> SearchJournal* {
-      ++journals_opened;
-      const std::string name = "journal " + std::to_string(journals_opened);
-      return &journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
-    };
     NoProgress progress;
     report = {};
     MessageLog log(options.message, report.warnings);
-    return search_pages(*store, query, options.memory_bytes, *kind, nullptr, {.open_journal = open},
-                        progress, report, log)
-        .result.hits.count();
+    ProfileSet no_profile;
+    CollectPage keep;
+    const auto open = [&] {
+      ++journals_opened;
+      const std::string name = "journal " + std::to_string(journals_opened);
+      journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
+      keep = keep_answer(*store, journal_->rows(), no_profile, &*journal_);
+    };
+    search_pages(*store,
+                 {.query = query,
+                  .memory_bytes = options.memory_bytes,
+                  .kind = *kind,
+                  .collect = [&](std::span<const PlannedCell> cells,
+                                 const PageResult& page) { keep(cells, page); }},
+                 {.made = open}, progress, report, log);
+    return journal_->rows().points(PointQuestion::kHits);
   }
 
   /// The error with which the search is refused; nullopt where it runs.

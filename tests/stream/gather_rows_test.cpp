@@ -33,10 +33,14 @@ std::vector<Row> shuffled(std::size_t count, std::mt19937_64& random) {
   return rows;
 }
 
-/// A set with other entries after they were counted, as where the store's file changes meanwhile.
-struct ChangingSet {
-  std::uint64_t bits;
-  std::uint64_t word(std::uint64_t) const { return bits; }
+/// Rows in memory that can be exchanged for others, as where the file that holds them changes.
+class ChangingRows final : public RowStorage {
+ public:
+  std::uint64_t keep(JournalRecord& record) override { return now->keep(record); }
+  JournalPayload read(std::uint64_t place, std::vector<std::byte>& bytes) const override {
+    return now->read(place, bytes);
+  }
+  RowStorage* now = nullptr;
 };
 
 }  // namespace
@@ -72,19 +76,33 @@ TEST_CASE("no row is put beside its place where the points change while they are
   write_las(folder / "a.las", cube_cloud(10'000, -1000, 1000, 1));
   convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5", 1000));
   const StoreReader store(folder / "a.h5");
-  ChangingSet set{0xff};
-  const SetCells cells = cells_of(store, set);
+  const Query query;
+  RowsInMemory first;
+  ChangingRows kept;
+  kept.now = &first;
+  AnswerRows answer(store, query, kept);
+  const auto rows_with = [&](std::uint64_t bits) {
+    return CellRows{.words = std::vector(store.blocks_per_cell() - 1, bits)};
+  };
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    answer.add(cell, {{PointQuestion::kHits, rows_with(0xff)}});
+  }
   NoProgress progress;
-  GatherRows<Row, ChangingSet> gather(store, set, cells, progress);
-  std::vector<Row> rows(cells.entries);
-  const auto rows_of = [](std::uint32_t) {
-    return [](std::uint64_t source, std::uint64_t, std::uint32_t i) { return Row{source, i}; };
+  GatherRows<Row> gather(store, answer, PointQuestion::kHits, progress);
+  std::vector<Row> rows(answer.points(PointQuestion::kHits));
+  const auto rows_of = [](std::uint32_t, const CellRows&) {
+    return [](std::uint64_t source, std::uint32_t i, std::size_t) { return Row{source, i}; };
   };
   const auto call = [&] { gather.gather(0, gather.counts().size(), rows, {}, rows_of); };
   call();
   CHECK(std::ranges::is_sorted(rows, {}, &Row::source));
-  set.bits = 0x7f;
-  CHECK_THROWS_AS(call(), InputError);
-  set.bits = 0xfffff;
-  CHECK_THROWS_AS(call(), InputError);
+  for (const std::uint64_t bits : {std::uint64_t{0x7f}, std::uint64_t{0xfffff}}) {
+    RowsInMemory others;
+    AnswerRows other(store, query, others);
+    for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+      other.add(cell, {{PointQuestion::kHits, rows_with(bits)}});
+    }
+    kept.now = &others;
+    CHECK_THROWS_AS(call(), InputError);
+  }
 }

@@ -8,6 +8,7 @@
 #include "cpu/sweep_engine.hpp"
 #include "planned_scene.hpp"
 #include "stream/run_pages.hpp"
+#include "support/engines/answer_sets.hpp"
 
 namespace clearway::test {
 

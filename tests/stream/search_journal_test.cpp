@@ -12,6 +12,7 @@
 #include "stream/run_pages.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/answer_sets.hpp"
 #include "support/file_size_limit.hpp"
 #include "support/result_fixture.hpp"
 
@@ -65,18 +66,30 @@ class JournalledScene {
   /// search is done.
   std::optional<SearchResult> sweep(std::uint64_t most_pages) {
     const auto run = [&](SearchJournal& journal, Progress& progress) {
-      std::vector<PlannedCell> cells = scene.cells;
-      std::erase_if(cells,
-                    [&](const PlannedCell& cell) { return journal.cell_finished(cell.cell); });
-      const SlotLayout layout{3, smallest_page_bytes(scene.cloud, scene.cells), 1};
-      SweepEngine engine(scene.cloud, scene.filter, layout);
-      PageEngine* const engines[] = {&engine};
-      StageTimes times;
-      const auto pages = paginate(scene.cloud, cells, layout.page_bytes, 1);
-      return run_pages(scene.cloud, cells, pages, engines, scene.query, 2, progress, times,
-                       &journal);
+      ProfileSet profile = empty_result(scene.cloud, scene.query).profile;
+      if (scene.query.profile > 0) journal.restore(profile);
+      run_journalled(journal, profile, progress);
+      return result_of(journal.rows(), scene.cloud, std::move(profile));
     };
     return resume(most_pages, run);
+  }
+
+  /// Searches the cells that the journal does not have. Returns how many pages that were.
+  std::size_t run_journalled(SearchJournal& journal, ProfileSet& profile,
+                             Progress& progress) const {
+    std::vector<PlannedCell> cells = scene.cells;
+    std::erase_if(cells, [&](const PlannedCell& cell) {
+      return journal.rows().answered(cell.cell, PointQuestion::kHits);
+    });
+    const SlotLayout layout{3, smallest_page_bytes(scene.cloud, scene.cells), 1};
+    SweepEngine engine(scene.cloud, scene.filter, layout);
+    PageEngine* const engines[] = {&engine};
+    StageTimes times;
+    const auto pages = paginate(scene.cloud, cells, layout.page_bytes, 1);
+    const IgnoredPoints none(scene.cloud, scene.query);
+    run_pages(scene.cloud, cells, pages, engines, {.ignored = none, .threads = 2},
+              keep_answer(scene.cloud, journal.rows(), profile, &journal), progress, times);
+    return pages.size();
   }
 
   std::optional<SearchResult> kdtree(std::uint64_t most_runs) {
@@ -212,10 +225,12 @@ TEST_CASE("a kdtree search goes on from a journal cut at any record") {
 TEST_CASE("records that are not of the cloud and the query are refused") {
   const JournalledScene set(false, 0), poses(true, 0), clearances(false, 0.3);
   const JournalledScene profile(false, 0, 0.5);
-  const std::string bits("\1\0\0\0\0\0\0\0", 8), none(8, '\0');
-  const std::string cell0("\1\0\1\0", 4);  // cell 0, one word, the first
+  const std::string bits("\1\0\0\0\0\0\0\0", 8), none(8, '\0'), pose("\5\0\0\0", 4);
+  const std::string hits_of_cell0("\1\1\0\0", 4);  // a cell, one question, the hits, cell 0
+  const std::string word0("\1\0", 2);              // one word, the first
+  const std::string cell0 = hits_of_cell0 + word0;
   CHECK_NOTHROW(open_with(set, cell0 + bits));
-  CHECK_NOTHROW(open_with(poses, cell0 + bits + '\5'));
+  CHECK_NOTHROW(open_with(poses, cell0 + bits + pose));
   CHECK_NOTHROW(open_with(set, std::string("\2\1\0", 3) + bits));
   CHECK_NOTHROW(open_with(set, std::string("\3\0\5", 3)));
   const auto refused = [](const JournalledScene& scene, const std::string& bytes,
@@ -228,22 +243,27 @@ TEST_CASE("records that are not of the cloud and the query are refused") {
   refused(set, cell0 + none, "points that the store does not have");
   refused(set, cell0 + bits + "x", "longer than what it holds");
   refused(set, cell0 + bits.substr(1), "ends too early");
-  refused(set, std::string("\1\xff\xff\x7f\0", 5), "a cell that the store does not have");
-  refused(set, std::string("\1\0\1\1", 4) + bits, "a block past its cell's end");
-  refused(set, std::string("\1\0\2\0", 4) + bits + '\0' + bits, "a block past its cell's end");
-  refused(poses, cell0 + bits + "\xff\x7f", "a pose past the trajectory's end");
+  refused(set, std::string("\1\1\0\xff\xff\x7f\0", 7), "a cell that the store does not have");
+  refused(set, std::string("\1\1\1\0\0", 5), "a question that was not asked");
+  refused(set, std::string("\1\1\x20\0\0", 5), "a question that is unknown");
+  refused(set, std::string("\1\x20", 2), "more questions than there are");
+  refused(set, hits_of_cell0 + std::string("\1\1", 2) + bits, "a block past its cell's end");
+  refused(set, hits_of_cell0 + std::string("\2\0", 2) + bits + '\0' + bits,
+          "a block past its cell's end");
+  refused(poses, cell0 + bits + std::string("\xff\x7f\0\0", 4), "a pose past the trajectory's end");
   refused(set, std::string("\2\1\xff\xff\x7f", 5) + bits, "a block that the store does not have");
   refused(set, std::string("\3\0\xff\x7f", 4), "poses past the trajectory's end");
   refused(set, std::string("\3\xff\xff\xff\xff\xff\xff\xff\xff\xff\1\2", 12),
           "poses past the trajectory's end");
-  const std::string clearance = std::string("\1\0\0\1\0", 5) + bits;
+  // Cell 0 with two questions: no hits, and a clearance
+  const std::string clearance = std::string("\1\2\0\1\0\0", 6) + word0 + bits + pose;
   const auto distance = [](double squared) {
     return std::string(reinterpret_cast<const char*>(&squared), sizeof squared);
   };
-  CHECK_NOTHROW(open_with(clearances, clearance + distance(0.01) + '\5'));
+  CHECK_NOTHROW(open_with(clearances, clearance + distance(0.01)));
   for (const double squared :
        {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    refused(clearances, clearance + distance(squared) + '\5', "a distance that is none");
+    refused(clearances, clearance + distance(squared), "a distance that is none");
     refused(profile, "\4\1\5" + distance(squared) + '\7', "a distance that is none");
   }
   CHECK_NOTHROW(open_with(profile, "\4\1\5" + distance(0.01) + '\7'));
@@ -264,34 +284,81 @@ TEST_CASE("a cell without hits costs a few bytes") {
   std::filesystem::remove(s.path);
   {
     SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
-    const std::vector<std::uint64_t> hits(s.scene.cloud.blocks_per_cell());
-    const std::vector<std::uint32_t> poses(s.scene.cloud.cell_entries(), HitSet::kNever);
-    const std::vector<Clearance> clearances(s.scene.cloud.cell_entries());
-    journal.append_page(std::span(s.scene.cells).first(1), {hits, poses, clearances, {}}, {});
+    const CellRows none{.words = std::vector<std::uint64_t>(s.scene.cloud.blocks_per_cell())};
+    journal.rows().add(1, {{PointQuestion::kHits, none}, {PointQuestion::kClearances, none}});
   }
-  CHECK(std::filesystem::file_size(s.path) <= empty + 32 + 5);
+  CHECK(std::filesystem::file_size(s.path) <= empty + 32 + 8);
 }
 
 TEST_CASE("a journal that cannot grow ends the run with its error") {
   const JournalledScene s(false, 0);
   SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
-  const SlotLayout layout{3, smallest_page_bytes(s.scene.cloud, s.scene.cells), 1};
-  SweepEngine engine(s.scene.cloud, s.scene.filter, layout);
-  PageEngine* const engines[] = {&engine};
-  const auto pages = paginate(s.scene.cloud, s.scene.cells, layout.page_bytes, 1);
-  StageTimes times;
+  ProfileSet none;
   NoProgress progress;
   {
     const FileSizeLimit limit(300);
-    check_refused(
-        [&] {
-          return run_pages(s.scene.cloud, s.scene.cells, pages, engines, s.scene.query, 2, progress,
-                           times, &journal);
-        },
-        "a.journal: cannot write");
+    check_refused([&] { return s.run_journalled(journal, none, progress); },
+                  "a.journal: cannot write");
   }
   const JournalReader read(s.path);  // the record that was cut off is a torn tail
   CHECK(read.records() > 0);
-  CHECK(read.records() < pages.size());
+  CHECK(read.records() < s.scene.cells.size());
   CHECK_FALSE(read.torn().empty());
+}
+
+TEST_CASE("rows are read back from the journal, and a record that changes meanwhile is named") {
+  const JournalledScene s(true, 0.3);
+  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  ProfileSet none;
+  NoProgress progress;
+  s.run_journalled(journal, none, progress);
+  const AnswerRows& rows = journal.rows();
+  REQUIRE(rows.points(PointQuestion::kHits) > 100);
+  std::uint64_t hits = 0, clearances = 0;
+  for (const std::uint32_t cell : rows.cells(PointQuestion::kHits)) {
+    hits += rows.read(cell, PointQuestion::kHits).count();
+  }
+  for (const std::uint32_t cell : rows.cells(PointQuestion::kClearances)) {
+    clearances += rows.read(cell, PointQuestion::kClearances).count();
+  }
+  CHECK(hits == rows.points(PointQuestion::kHits));
+  CHECK(clearances == rows.points(PointQuestion::kClearances));
+  CHECK(rows.read(0, PointQuestion::kNear).count() == 0);  // was not asked
+  std::string bytes = bytes_of(s.path);
+  bytes[bytes.size() / 2] ^= 1;
+  put_bytes(s.path, bytes);
+  check_refused(
+      [&] {
+        for (const std::uint32_t cell : rows.cells(PointQuestion::kHits)) {
+          rows.read(cell, PointQuestion::kHits);
+        }
+        for (const std::uint32_t cell : rows.cells(PointQuestion::kClearances)) {
+          rows.read(cell, PointQuestion::kClearances);
+        }
+      },
+      "a.journal: the record at byte ... was changed");
+}
+
+TEST_CASE("rows in memory ask for memory, and stop where there is none") {
+  const JournalledScene s(true, 0);
+  std::uint64_t left = 1000;
+  RowsInMemory kept([&](std::uint64_t bytes) {
+    if (bytes > left) throw ResourceError("no more");
+    left -= bytes;
+  });
+  AnswerRows rows(s.scene.cloud, s.scene.query, kept);
+  const CellRows found{.words = {5}, .poses = {7, 3}};
+  std::uint32_t cell = 0;
+  CHECK_THROWS_WITH(
+      [&] {
+        for (;; ++cell) rows.add(cell, {{PointQuestion::kHits, found}});
+      }(),
+      "no more");
+  CHECK(cell > 10);
+  CHECK(kept.allocated_bytes() + left == 1000);
+  CHECK_FALSE(rows.answered(cell, PointQuestion::kHits));
+  CHECK(rows.points(PointQuestion::kHits) == 2 * cell);
+  const CellRows again = rows.read(cell - 1, PointQuestion::kHits);
+  CHECK(again.words == found.words);
+  CHECK(again.poses == found.poses);
 }

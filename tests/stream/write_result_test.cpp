@@ -29,7 +29,7 @@ class Site {
   const StoreReader& store() const { return *store_; }
 
   /// Writes the answer and returns the bytes of the result file.
-  std::string written(const SearchResult& answer, const ResultHeader& header,
+  std::string written(const FoundAnswer& answer, const ResultHeader& header,
                       std::uint64_t memory_bytes, int threads = 0) const {
     NoProgress progress;
     found_ = write_result(*store_, answer, header, folder_ / "out.h5", memory_bytes, progress, {},
@@ -57,22 +57,48 @@ ResultHeader header_of(const StoreReader& store) {
   return header;
 }
 
+constexpr std::uint32_t kPoses = 100'003;
+
+std::uint32_t pose_of(std::uint64_t source) {
+  return static_cast<std::uint32_t>(source * 7 % kPoses);
+}
+
 double squared_of(std::uint64_t source) { return 1 / (4 + static_cast<double>(source)); }
 
 /// An answer in which most points have a clearance and a hit, both computed from the source index.
-SearchResult answer_for(const StoreReader& store) {
-  SearchResult answer{HitSet(store.entry_count(), true), ClearanceSet(store.entry_count())};
-  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    const auto sources = store.sources(cell);
-    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
-      const std::uint64_t slot = std::uint64_t{cell} * store.cell_entries() + i;
-      const auto pose = static_cast<std::uint32_t>(sources[i] * 7);
-      if (sources[i] % 11 != 3) answer.hits.mark(slot, pose);
-      if (sources[i] % 5 != 2) answer.clearances.set(slot, {squared_of(sources[i]), pose});
+class MadeAnswer {
+ public:
+  explicit MadeAnswer(const StoreReader& store) : rows_(store, query_, kept_) {
+    for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+      const auto sources = store.sources(cell);
+      CellRows hits{.words = std::vector<std::uint64_t>(store.blocks_per_cell())};
+      CellRows clearances = hits;
+      for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+        const std::uint64_t source = sources[i], bit = std::uint64_t{1} << i % 64;
+        if (source % 11 != 3) {
+          hits.words[i / 64] |= bit;
+          hits.poses.push_back(pose_of(source));
+        }
+        if (source % 5 != 2) {
+          clearances.words[i / 64] |= bit;
+          clearances.poses.push_back(pose_of(source));
+          clearances.distances.push_back(squared_of(source));
+        }
+      }
+      rows_.add(cell, {{PointQuestion::kHits, hits}, {PointQuestion::kClearances, clearances}});
     }
+    found.rows = &rows_;
   }
-  return answer;
-}
+
+  FoundAnswer found;
+
+ private:
+  const Query query_{{{0, 0, 0}},
+                     std::vector<Pose>(kPoses),
+                     {.radius = 0.1, .first_pose = true, .clearance = 0.75}};
+  RowsInMemory kept_;
+  AnswerRows rows_;
+};
 
 /// The position of the point with each source index.
 std::vector<Vec3> places_of(const StoreReader& store) {
@@ -91,7 +117,8 @@ std::vector<Vec3> places_of(const StoreReader& store) {
 
 TEST_CASE("collisions and clearances written in several passes give the bytes of one") {
   const Site site;
-  const SearchResult answer = answer_for(site.store());
+  const MadeAnswer made(site.store());
+  const FoundAnswer& answer = made.found;
   const ResultHeader header = header_of(site.store());
   const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
   for (const std::uint64_t memory : {0, 1, 5'000'000, 12'000'000}) {
@@ -106,8 +133,7 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
   for (RowStream<Clearances> stream(result); stream.read(batch);) {
     for (std::size_t i = 0; i < batch.size(); ++i, ++source) {
       if (source % 5 == 2) ++source;
-      wrong += batch.source[i] != source ||
-               batch.pose[i] != static_cast<std::uint32_t>(source * 7) ||
+      wrong += batch.source[i] != source || batch.pose[i] != pose_of(source) ||
                batch.distance[i] != std::sqrt(squared_of(source)) || batch.xyz[i] != places[source];
     }
   }
@@ -117,7 +143,8 @@ TEST_CASE("collisions and clearances written in several passes give the bytes of
 
 TEST_CASE("any number of threads writes the same bytes") {
   const Site site;
-  const SearchResult answer = answer_for(site.store());
+  const MadeAnswer made(site.store());
+  const FoundAnswer& answer = made.found;
   const ResultHeader header = header_of(site.store());
   const std::string once = site.written(answer, header, std::uint64_t{1} << 30, 1);
   for (const int threads : {2, 3, 16}) {
@@ -129,7 +156,8 @@ TEST_CASE("any number of threads writes the same bytes") {
 
 TEST_CASE("rows that are appended give the bytes of rows that are written from a search") {
   const Site site;
-  const SearchResult answer = answer_for(site.store());
+  const MadeAnswer made(site.store());
+  const FoundAnswer& answer = made.found;
   const ResultHeader header = header_of(site.store());
   const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
   const ResultReader result = site.result();
@@ -149,7 +177,8 @@ TEST_CASE("rows that are appended give the bytes of rows that are written from a
 
 TEST_CASE("writing a result gives the places that reading it gives") {
   const Site site;
-  const SearchResult answer = answer_for(site.store());
+  const MadeAnswer made(site.store());
+  const FoundAnswer& answer = made.found;
   site.written(answer, header_of(site.store()), 0);
   const ResultReader result = site.result();
   const Collisions rows = read_rows(result);

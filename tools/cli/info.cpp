@@ -215,7 +215,12 @@ ordered_json describe(const JournalReader& journal) {
                            {"records", journal.records()},
                            {"finished_cells", work.cells},
                            {"finished_poses", work.poses},
+                           {"answered_cells", ordered_json::object()},
                            {"torn", journal.torn()}};
+  for (std::size_t i = 0; i < kQuestions; ++i) {
+    if (work.of_questions[i] == 0) continue;
+    description["answered_cells"][name_of(static_cast<PointQuestion>(i))] = work.of_questions[i];
+  }
   if (journal.identity()) {
     for (const auto& [name, value] : *journal.identity()) description[name] = value;
   }

@@ -220,6 +220,11 @@ class PackedCloud {
     return coordinates(cell);
   }
 
+  /// coordinates() of which the caller reads one block.
+  virtual std::array<PackedChunk<std::int32_t>, 3> coordinates_of_block(std::uint32_t cell) const {
+    return coordinates(cell);
+  }
+
   /// Size of the packed x, y and z of a cell together, bytes.
   virtual std::uint64_t packed_bytes(std::uint32_t cell) const = 0;
 

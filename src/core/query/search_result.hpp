@@ -12,15 +12,12 @@
 #include <memory>
 #include <mutex>
 #include <new>
-#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "clearway/query.hpp"
-#include "clearway/seen.hpp"
 #include "core/query/body_numbers.hpp"
-#include "core/seen/cross_sections.hpp"
 
 namespace clearway {
 
@@ -152,43 +149,6 @@ struct Clearance {
   friend bool operator==(const Clearance&, const Clearance&) = default;
 };
 
-/// Clearances of a PackedCloud by entry, 12 bytes each; none if it is not below the distance asked
-/// for. Different entries may be set at the same time.
-class ClearanceSet {
- public:
-  ClearanceSet() = default;
-  explicit ClearanceSet(std::uint64_t entries) : squared_(entries), poses_(entries) {}
-
-  void set(std::uint64_t entry, const Clearance& clearance) {
-    squared_[entry] = std::bit_cast<std::uint64_t>(clearance.squared) ^ kNone;
-    poses_[entry] = ~clearance.pose;
-  }
-
-  Clearance at(std::uint64_t entry) const {
-    return {std::bit_cast<double>(squared_[entry] ^ kNone), ~poses_[entry]};
-  }
-
-  /// The entries 64 * index + i that have a clearance, as bits i.
-  std::uint64_t word(std::uint64_t index) const {
-    std::uint64_t bits = 0;
-    for (unsigned i = 0; i < 64; ++i) {
-      bits |= std::uint64_t{squared_[64 * index + i] != 0} << i;
-    }
-    return bits;
-  }
-
-  std::uint64_t allocated_bytes() const {
-    return squared_.allocated_bytes() + poses_.allocated_bytes();
-  }
-
- private:
-  /// Values are stored as differences from the one that means none, so that zeros mean none.
-  static constexpr std::uint64_t kNone = std::bit_cast<std::uint64_t>(Clearance{}.squared);
-
-  ZeroedArray<std::uint64_t> squared_;
-  ZeroedArray<std::uint32_t> poses_;
-};
-
 /// A fact that a search found for a pose: a point of the environment, and the least computed d2
 /// between it and the model at that pose, square metres.
 struct ProfileFact {
@@ -259,26 +219,23 @@ class ProfileSet {
 /// asks for nothing else.
 Query backwards(const Query& query);
 
-/// The greatest index of a pose that touches each colliding point. Between poses it is the start of
-/// the last way that touches it (docs/design/findings.md, "Last poses").
+/// The greatest index of a pose that touches a colliding point. Between poses it is the start of the
+/// last way that touches it (docs/design/findings.md, "Last poses").
 class LastPoses {
  public:
-  /// answer: the hits of backwards(query).
-  LastPoses(const Query& query, HitSet answer)
-      : answer_(std::move(answer)),
-        numbers_(query),
+  explicit LastPoses(const Query& query)
+      : numbers_(query),
         last_(static_cast<std::uint32_t>(std::max<std::size_t>(query.poses.size(), 1) - 1)),
         ways_(query.between_poses && last_ > 0 ? 1 : 0) {}
 
-  /// The last pose of an entry. first: the point's first pose.
-  std::uint32_t at(std::uint64_t entry, std::uint32_t first) const {
-    if (!answer_.contains(entry)) return first;
-    const std::uint32_t before = numbers_.pose_of(answer_.first_pose(entry)) + ways_;
+  /// The last pose of a point. first: its first pose; backward: its number in the answer of
+  /// backwards(query).
+  std::uint32_t of(std::uint32_t first, std::uint32_t backward) const {
+    const std::uint32_t before = numbers_.pose_of(backward) + ways_;
     return before > last_ ? first : std::max(first, last_ - before);
   }
 
  private:
-  HitSet answer_;
   BodyNumbers numbers_;
   std::uint32_t last_;
   std::uint32_t ways_;  ///< 1 if a pose stands for the way from it to the next, otherwise 0
@@ -289,64 +246,6 @@ struct Depth {
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN if none is free
   std::uint64_t source = kNoPoint;  ///< of several the smallest; kNoPoint if none is free
-};
-
-/// The depths of the entries of a HitSet: 16 bytes for each of them, and 8 for each 64 entries of
-/// the cloud. Different entries may be set at the same time. `hits` is the same set in every call.
-class DepthSet {
- public:
-  /// entries: number of entries of the cloud.
-  DepthSet(const HitSet& hits, std::uint64_t entries) : before_(entries / 64) {
-    std::uint64_t count = 0;
-    for (std::uint64_t word = 0; word < before_.size(); ++word) {
-      before_[word] = count;
-      count += static_cast<std::uint64_t>(std::popcount(hits.word(word)));
-    }
-    depths_.resize(count);
-  }
-
-  void set(const HitSet& hits, std::uint64_t entry, const Depth& depth) {
-    depths_[index_of(hits, entry)] = depth;
-  }
-  const Depth& at(const HitSet& hits, std::uint64_t entry) const {
-    return depths_[index_of(hits, entry)];
-  }
-
-  /// The bytes of a set with so many depths.
-  static std::uint64_t bytes(std::uint64_t entries, std::uint64_t depths) {
-    return entries / 64 * sizeof(std::uint64_t) + depths * sizeof(Depth);
-  }
-
- private:
-  std::uint64_t index_of(const HitSet& hits, std::uint64_t entry) const {
-    const std::uint64_t below = hits.word(entry / 64) & ((std::uint64_t{1} << (entry % 64)) - 1);
-    return before_[entry / 64] + static_cast<std::uint64_t>(std::popcount(below));
-  }
-
-  std::vector<std::uint64_t> before_;  ///< number of hits in the words before each word
-  std::vector<Depth> depths_;
-};
-
-/// The answer of an engine for every entry of a cloud.
-struct SearchResult {
-  HitSet hits;
-  ClearanceSet clearances;  ///< no entries unless asked for
-  ProfileSet profile = {};  ///< no poses unless asked for
-  /// The cells of the cloud in which points were found, ascending, so that whoever reads the result
-  /// need not look at all; nullopt where any cell may have some.
-  std::optional<std::vector<std::uint32_t>> cells = {};
-  /// Number of ignored points in the cells that were searched, without those of a journal.
-  std::uint64_t ignored_points = 0;
-  /// Set after a search for seen space, if that was asked for
-  std::optional<UnseenCubes> unseen = {};
-  SweptCells swept = {};  ///< of the same search
-  /// Set after a search for them, if first poses were asked for
-  std::optional<LastPoses> last_poses = {};
-  /// With an error budget: the points that do not collide but are closer than the margin plus it,
-  /// and the colliding points that are certainly too close
-  std::optional<HitSet> near = {}, certain = {};
-  /// Set after a search for them, if depths were asked for
-  std::optional<DepthSet> depths = {};
 };
 
 }  // namespace clearway

@@ -137,6 +137,14 @@ void JournalPayload::refuse(const std::string& what) const {
   throw InputError(where_ + ": " + what);
 }
 
+JournalPayload read_record(const File& file, std::uint64_t place, std::vector<std::byte>& bytes) {
+  const std::string where = file.name() + ": the record at byte " + std::to_string(place);
+  if (!read_record(file, place, file.size_bytes(), bytes)) {
+    throw InputError(where + " was changed while the run was under way");
+  }
+  return {bytes, where, place};
+}
+
 JournalReader::JournalReader(const std::filesystem::path& path) : file_(File::open_regular(path)) {
   const std::uint64_t size = file_.size_bytes();
   if (size < kJournalHeadBytes) {
@@ -172,8 +180,8 @@ void JournalReader::for_each(const std::function<void(JournalPayload)>& visit) c
     if (!read_record(file_, at, whole_bytes_, payload)) {
       throw InputError(where + " changed while it was read");
     }
+    if (record > 0) visit({payload, where, at});
     at += sizeof(RecordHeader) + payload.size();
-    if (record > 0) visit({payload, where});
   }
 }
 
@@ -202,6 +210,10 @@ void sync_folder_of(const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+void JournalRecord::reserve(std::uint64_t payload_bytes) {
+  bytes_.reserve(sizeof(RecordHeader) + payload_bytes);
+}
 
 void JournalRecord::clear() { bytes_.assign(sizeof(RecordHeader), std::byte{0}); }
 
@@ -268,7 +280,7 @@ JournalWriter JournalWriter::resume(const std::filesystem::path& path, const Jou
 
 const File& JournalWriter::file() const { return state_->file; }
 
-void JournalWriter::append(JournalRecord& record) {
+std::uint64_t JournalWriter::append(JournalRecord& record) {
   State& s = *state_;
   const std::span<const std::byte> payload = record.payload();
   if (payload.size() > kMostPayloadBytes) {
@@ -281,6 +293,7 @@ void JournalWriter::append(JournalRecord& record) {
                       .payload_xxh64 = xxh64(payload),
                       .header_xxh64 = 0};
   bool due;
+  std::uint64_t place;
   {
     const std::lock_guard lock(s.mutex);
     if (s.failed) throw ResourceError(s.file.name() + ": cannot write after a failure");
@@ -290,6 +303,7 @@ void JournalWriter::append(JournalRecord& record) {
     s.failed = true;
     s.file.write_at(s.end, record.bytes_);
     s.failed = false;
+    place = s.end;
     s.end += record.bytes_.size();
     due = std::chrono::duration<double>(SteadyClock::now() - s.last_sync).count() >=
           s.interval_seconds;
@@ -297,6 +311,7 @@ void JournalWriter::append(JournalRecord& record) {
   }
   record.clear();
   if (due) sync();
+  return place;
 }
 
 void JournalWriter::sync() {

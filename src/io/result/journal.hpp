@@ -21,7 +21,7 @@
 /// (docs/design/journal.md).
 namespace clearway {
 
-inline constexpr std::uint32_t kJournalVersion = 2;
+inline constexpr std::uint32_t kJournalVersion = 3;
 
 /// The identity of a journal, which says what it belongs to, as named values in a fixed order.
 using JournalIdentity = std::vector<std::pair<std::string, std::string>>;
@@ -54,10 +54,13 @@ class JournalRecord {
     const auto bytes = std::as_bytes(std::span(&value, 1));
     bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
   }
-  /// Appends a number with seven bits per byte, the lowest first.
+  /// Appends a number with seven bits per byte, the lowest first: at most kMostCountBytes.
+  static constexpr std::uint64_t kMostCountBytes = 10;
   void put_count(std::uint64_t value);
   void put_text(const std::string& text);
   void put_bytes(std::span<const std::byte> bytes);
+  /// Makes room for a payload of so many bytes, so that it need not grow.
+  void reserve(std::uint64_t payload_bytes);
   void clear();
   std::span<const std::byte> payload() const;
 
@@ -69,8 +72,9 @@ class JournalRecord {
 /// A payload, read front to back. Reading beyond its end throws InputError.
 class JournalPayload {
  public:
-  JournalPayload(std::span<const std::byte> bytes, std::string where)
-      : left_(bytes), where_(std::move(where)) {}
+  /// place: where the record is in the file.
+  JournalPayload(std::span<const std::byte> bytes, std::string where, std::uint64_t place = 0)
+      : left_(bytes), where_(std::move(where)), place_(place) {}
 
   template <typename Value>
   requires std::is_trivially_copyable_v<Value> Value take() {
@@ -83,13 +87,19 @@ class JournalPayload {
   /// The next bytes, which belong to the payload.
   std::span<const std::byte> take_bytes(std::size_t bytes);
   bool at_end() const { return left_.empty(); }
+  std::uint64_t place() const { return place_; }
   /// Throws InputError, which names file and record.
   [[noreturn]] void refuse(const std::string& what) const;
 
  private:
   std::span<const std::byte> left_;
   std::string where_;
+  std::uint64_t place_;
 };
+
+/// Reads the payload of the record at a place of a journal's file into `bytes`. Throws InputError,
+/// which names the place, where the record is damaged.
+JournalPayload read_record(const File& file, std::uint64_t place, std::vector<std::byte>& bytes);
 
 /// Reads and checks a journal to its end. A torn tail, records that were being written when the
 /// process or the system died, is left out. Throws InputError, which names the record, where
@@ -134,8 +144,8 @@ class JournalWriter {
   JournalWriter(JournalWriter&&) noexcept;
   ~JournalWriter();
 
-  /// Appends the record, which is empty afterwards.
-  void append(JournalRecord& record);
+  /// Appends the record, which is empty afterwards, and returns its place in the file.
+  std::uint64_t append(JournalRecord& record);
   void sync();
 
   const File& file() const;

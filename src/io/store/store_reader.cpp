@@ -397,6 +397,13 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t 
   return chunks;
 }
 
+std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates_of_block(
+    std::uint32_t cell) const {
+  std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
+  handed_out_.coordinates.add(packed_bytes(cell) / blocks_per_cell());
+  return mapped_coordinates(cell);
+}
+
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) const {
   handed_out_.coordinates.add(packed_bytes(cell));
   return mapped_coordinates(cell);

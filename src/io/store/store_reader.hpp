@@ -72,6 +72,7 @@ class StoreReader final : public PackedCloud {
   std::span<const BlockBox> blocks() const override { return index_.blocks; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
+  std::array<PackedChunk<std::int32_t>, 3> coordinates_of_block(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   /// The source index of a point of a cell, by sources().
   std::uint64_t source_of(std::uint32_t cell, std::uint32_t index) const override;
@@ -92,8 +93,8 @@ class StoreReader final : public PackedCloud {
   /// Number of cells whose coordinates were requested or read since the store was opened, except by
   /// peek().
   std::uint64_t cells_touched() const;
-  /// Bytes that were handed out since the store was opened, by peek() too: the packed bytes of whole
-  /// cells, and of single points the values.
+  /// Bytes that were handed out since the store was opened, by peek() too: the packed bytes of
+  /// whole cells, their share of blocks, and the values of single points.
   BytesRead bytes_read() const;
 
   Box bounds() const override;

@@ -10,6 +10,7 @@
 #include "core/page/page_pool.hpp"
 #include "core/query/search_result.hpp"
 #include "core/sweep/sweep_filter.hpp"
+#include "support/engines/answer_sets.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {

@@ -3,6 +3,7 @@
 #include "clearway/error.hpp"
 #include "cpu/grid_cpu_engine.hpp"
 #include "stream/run_pages.hpp"
+#include "support/engines/answer_sets.hpp"
 
 namespace clearway {
 namespace {

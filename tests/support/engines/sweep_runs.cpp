@@ -8,6 +8,7 @@
 #include "core/sweep/tolerance.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
+#include "support/engines/answer_sets.hpp"
 #include "support/engines/engines.hpp"
 
 namespace clearway {

@@ -14,6 +14,7 @@
 #include "search/kept_models.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
+#include "stream/search_journal.hpp"
 
 namespace clearway::bench {
 namespace {
@@ -126,15 +127,22 @@ class Share {
     CountingKind kind(store, query, options_, forced);
     if (kept != nullptr) kind.keep_models_in(*kept, {model_hash_});
     const Stopwatch clock;
-    Found found =
-        search_pages(store, query, options_.memory_bytes, kind, nullptr, {}, progress, report, log);
+    RowsInMemory kept_rows;
+    AnswerRows rows(store, query, kept_rows);
+    ProfileSet no_profile;
+    SearchEnd end = search_pages(store,
+                                 {.query = query,
+                                  .memory_bytes = options_.memory_bytes,
+                                  .kind = kind,
+                                  .collect = keep_answer(store, rows, no_profile, nullptr)},
+                                 {}, progress, report, log);
     const double seconds = clock.seconds();
-    found.engine_end.clear();
+    end.engine_end.clear();
     const SweepStatistics& tests = kind.tests();
     return {{"seconds", seconds},
             {"field_seconds", report.seconds.field},
             {"search_seconds", report.seconds.search},
-            {"colliding_points", found.result.hits.count()},
+            {"colliding_points", rows.points(PointQuestion::kHits)},
             {"points", store.point_count()},
             {"points_tested", tests.points_tested},
             {"poses", query.poses.size()},

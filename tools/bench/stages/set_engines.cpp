@@ -16,6 +16,7 @@
 #include "search/kinds/sweep_kind.hpp"
 #include "search/page_search.hpp"
 #include "search/result_header.hpp"
+#include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
 #ifdef CLEARWAY_CUDA
 #include "search/kinds/cuda_kind.hpp"
@@ -113,18 +114,25 @@ Json search_with_set_engines(const SetEngines& asked) {
   const MessageLog log(silent, report.warnings);
   NoProgress progress;
   const auto kind = kind_of(store, thinned.query(), asked, options, log);
-  Found found = search_pages(store, thinned.query(), options.memory_bytes, *kind, nullptr, {},
-                             progress, report, log);
+  RowsInMemory kept;
+  AnswerRows rows(store, thinned.query(), kept);
+  FoundAnswer found{.rows = &rows};
+  SearchEnd end = search_pages(store,
+                               {.query = thinned.query(),
+                                .memory_bytes = options.memory_bytes,
+                                .kind = *kind,
+                                .collect = keep_answer(store, rows, found.profile, nullptr)},
+                               {}, progress, report, log);
   const std::uint64_t model_hash = hash_of_model(query.model);
   const ResultHeader header =
       result_header(store, query, std::span(&model_hash, 1),
                     [](const QueryParameters&) { return IgnoredPointCounts{}; });
   const Stopwatch writing;
-  const TableSummary written = write_result(store, found.result, header, output.partial(),
-                                            found.write_bytes, progress, {}, options.threads);
+  const TableSummary written = write_result(store, found, header, output.partial(), end.write_bytes,
+                                            progress, {}, options.threads);
   output.publish();
   report.seconds.write = writing.seconds();
-  found.engine_end.clear();
+  end.engine_end.clear();
 
   Json out{{"radius", query.radius},
            {"environment_points", store.point_count()},

@@ -115,7 +115,10 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   NoProgress progress;
   StageTimes times;
   PageEngine* const engines[] = {&engine};
-  run_pages(store, cells, pages, engines, query, options.threads, progress, times);
+  const IgnoredPoints none(store, query);
+  run_pages(
+      store, cells, pages, engines, {.ignored = none, .threads = options.threads},
+      [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
   nlohmann::ordered_json out{{"pages", pages.size()},
                              {"cells_read", store.cells_touched()},
                              {"bytes_read", store.bytes_read().coordinates},
