@@ -11,25 +11,32 @@ std::uint32_t block_count(const Cell& cell) {
 
 }  // namespace
 
-EnvironmentTree::EnvironmentTree(const PackedCloud& cloud, int threads)
+EnvironmentTree::EnvironmentTree(const PackedCloud& cloud)
     : cloud_(cloud),
       cells_(cloud.cells()),
       blocks_(cloud.blocks()),
-      blocks_per_cell_(cloud.blocks_per_cell()),
-      inner_boxes_(cells_.size() * blocks_per_cell_) {
+      blocks_per_cell_(cloud.blocks_per_cell()) {}
+
+EnvironmentTree::EnvironmentTree(const PackedCloud& cloud, int threads) : EnvironmentTree(cloud) {
+  inner_boxes_.resize(node_slots());
 #pragma omp parallel for schedule(static) num_threads(threads)
   for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    unite_blocks(static_cast<std::uint32_t>(cell), 0, block_count(cells_[cell]));
+    fill_inner_boxes(static_cast<std::uint32_t>(cell),
+                     std::span(inner_boxes_).subspan(cell * blocks_per_cell_, blocks_per_cell_));
   }
 }
 
-BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first,
-                                       std::uint32_t count) {
+void EnvironmentTree::fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const {
+  unite_blocks(cell, 0, block_count(cells_[cell]), inner);
+}
+
+BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count,
+                                       std::span<BlockBox> inner) const {
   if (count == 1) return blocks_[block_index(cell, first)];
   const auto left = static_cast<std::uint32_t>(left_count(count, 1));
-  const BlockBox box =
-      unite_blocks(cell, first, left).united(unite_blocks(cell, first + left, count - left));
-  inner_boxes_[inner_index({EnvironmentNode::kInCell, cell, first, count})] = box;
+  const BlockBox box = unite_blocks(cell, first, left, inner)
+                           .united(unite_blocks(cell, first + left, count - left, inner));
+  inner[inner_in_cell({EnvironmentNode::kInCell, cell, first, count})] = box;
   return box;
 }
 
@@ -53,13 +60,13 @@ std::array<EnvironmentNode, 2> EnvironmentTree::children(const EnvironmentNode& 
                           node.block_count - left}};
 }
 
-Box EnvironmentTree::box(const EnvironmentNode& node) const {
+Box EnvironmentTree::box(const EnvironmentNode& node, std::span<const BlockBox> inner) const {
   const Quantisation& quantisation = cloud_.quantisation();
   if (node.top != EnvironmentNode::kInCell) {
     return position_box(quantisation, cloud_.tree()[node.top].box);
   }
   const BlockBox& inside = node.block_count == 1 ? blocks_[block_index(node.cell, node.first_block)]
-                                                 : inner_boxes_[inner_index(node)];
+                                                 : inner[inner_in_cell(node)];
   return position_box(quantisation, decode_block_box(cells_[node.cell].box, inside));
 }
 

@@ -23,11 +23,14 @@ struct EnvironmentNode {
   bool is_block() const { return top == kInCell && block_count == 1; }
 };
 
-/// The whole k-d tree of a cloud, from all cells down to blocks. It keeps no points, but only the
-/// boxes of the inner nodes of cells: 12 bytes for each block. The cloud must outlive it.
+/// The whole k-d tree of a cloud, from all cells down to blocks. It keeps no points, but at most
+/// the boxes of the inner nodes of cells: 12 bytes for each block. The cloud must outlive it.
 class EnvironmentTree {
  public:
+  /// A tree that keeps the boxes of all cells.
   EnvironmentTree(const PackedCloud& cloud, int threads);
+  /// A tree without boxes of inner nodes, for callers that keep those of some cells.
+  explicit EnvironmentTree(const PackedCloud& cloud);
 
   const PackedCloud& cloud() const { return cloud_; }
   EnvironmentNode root() const { return from_top(0); }
@@ -36,8 +39,15 @@ class EnvironmentTree {
   /// The two halves of a node that is not a block.
   std::array<EnvironmentNode, 2> children(const EnvironmentNode& node) const;
 
-  /// A box that holds every point of the node.
-  Box box(const EnvironmentNode& node) const;
+  /// A box that holds every point of the node, in a tree that keeps boxes.
+  Box box(const EnvironmentNode& node) const {
+    return box(node, std::span(inner_boxes_).subspan(first_inner(node)));
+  }
+  /// The same in any tree. inner: what fill_inner_boxes() has filled for the node's cell; any where
+  /// the node is a block or several cells.
+  Box box(const EnvironmentNode& node, std::span<const BlockBox> inner) const;
+  /// Fills the boxes of the inner nodes of a cell. inner: a box for each block of a full cell.
+  void fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const;
 
   /// Upper bound on the number of points of the node.
   std::uint64_t most_points(const EnvironmentNode& node) const {
@@ -47,14 +57,17 @@ class EnvironmentTree {
 
   /// A number below node_slots() that no other inner node of any cell has.
   std::uint64_t inner_index(const EnvironmentNode& node) const {
-    return std::uint64_t{node.cell} * blocks_per_cell_ + node.first_block +
-           left_count(node.block_count, 1);
+    return std::uint64_t{node.cell} * blocks_per_cell_ + inner_in_cell(node);
+  }
+  /// A number below the blocks of a full cell that no other inner node of the cell has.
+  static std::uint64_t inner_in_cell(const EnvironmentNode& node) {
+    return node.first_block + left_count(node.block_count, 1);
   }
   /// Index of the block's word in a HitSet.
   std::uint64_t block_index(std::uint32_t cell, std::uint32_t block) const {
     return std::uint64_t{cell} * blocks_per_cell_ + block;
   }
-  std::uint64_t node_slots() const { return inner_boxes_.size(); }
+  std::uint64_t node_slots() const { return std::uint64_t{cells_.size()} * blocks_per_cell_; }
 
   std::uint32_t points_in_block(std::uint32_t cell, std::uint32_t block) const {
     const std::uint32_t rest = cells_[cell].count - block * kBlockPoints;
@@ -65,7 +78,13 @@ class EnvironmentTree {
 
  private:
   EnvironmentNode from_top(std::uint32_t index) const;
-  BlockBox unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count);
+  BlockBox unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count,
+                        std::span<BlockBox> inner) const;
+  /// The place of the first inner box of the node's cell.
+  std::size_t first_inner(const EnvironmentNode& node) const {
+    const bool has_inner = node.top == EnvironmentNode::kInCell && node.block_count > 1;
+    return has_inner ? std::size_t{node.cell} * blocks_per_cell_ : 0;
+  }
 
   const PackedCloud& cloud_;
   std::span<const Cell> cells_;

@@ -54,17 +54,19 @@ struct BlockPlaces {
 
 }  // namespace
 
-FreePoints::FreePoints(const EnvironmentTree& tree)
+FreePoints::FreePoints(const EnvironmentTree& tree, std::span<const std::uint32_t> cells)
     : tree_(tree),
-      words_(tree.node_slots()),
-      inner_(tree.node_slots()),
-      top_(tree.cloud().tree().size()) {}
+      places_(tree.cloud().cells().size(), kAll),
+      words_(cells.size() * tree.cloud().blocks_per_cell()),
+      inner_(words_.size()),
+      top_(tree.cloud().tree().size()) {
+  for (std::uint32_t i = 0; i < cells.size(); ++i) places_[cells[i]] = i;
+}
 
 void FreePoints::add_cell(std::uint32_t cell, std::span<const std::uint64_t> taken,
                           const IgnoredPoints& ignored) {
   const PackedCloud& cloud = tree_.cloud();
-  const std::uint64_t first = tree_.block_index(cell, 0);
-  const std::span words = std::span(words_).subspan(first, cloud.blocks_per_cell());
+  const std::span words = std::span(words_).subspan(first_word(cell), cloud.blocks_per_cell());
   const EnvironmentNode node = tree_.cell(cell);
   if (ignored.any() && ignored.touches(cell)) {
     ignored.mask(cell, words, [&] { return cloud.peek(cell); });
@@ -82,7 +84,7 @@ bool FreePoints::mark(const EnvironmentNode& node) {
   if (node.is_block()) return word(node.cell, node.first_block) != 0;
   const auto [left, right] = tree_.children(node);
   const bool in_left = mark(left), in_right = mark(right);
-  inner_[tree_.inner_index(node)] = in_left || in_right ? 1 : 0;
+  inner_[inner_place(node)] = in_left || in_right ? 1 : 0;
   return in_left || in_right;
 }
 
@@ -102,7 +104,23 @@ NearestFree::NearestFree(const EnvironmentTree& tree, const FreePoints& free)
     : tree_(tree),
       cloud_(tree.cloud()),
       free_(free),
-      kept_(std::make_unique<std::array<FreeBlock, kKept>>()) {}
+      kept_(std::make_unique<std::array<FreeBlock, kKept>>()),
+      boxes_(kKeptCells * cloud_.blocks_per_cell()) {
+  box_cells_.fill(EnvironmentNode::kInCell);
+}
+
+/// The box of a node, from the boxes of its cell, which are made where they are not kept.
+Box NearestFree::box_of(const EnvironmentNode& node) {
+  if (node.top != EnvironmentNode::kInCell || node.is_block()) return tree_.box(node, {});
+  const std::size_t place = node.cell % kKeptCells;
+  const std::span inner =
+      std::span(boxes_).subspan(place * cloud_.blocks_per_cell(), cloud_.blocks_per_cell());
+  if (box_cells_[place] != node.cell) {
+    tree_.fill_inner_boxes(node.cell, inner);
+    box_cells_[place] = node.cell;
+  }
+  return tree_.box(node, inner);
+}
 
 void NearestFree::search(std::uint32_t cell, std::uint32_t block, std::uint64_t points,
                          std::span<Depth, kBlockPoints> found) {
@@ -121,12 +139,12 @@ void NearestFree::search(std::uint32_t cell, std::uint32_t block, std::uint64_t 
     // At equal distances the smallest source decides, so that such nodes have to be searched.
     if (nearest.squared > farthest) break;
     if (nearest.node.is_block()) {
-      visit(nearest.node, tree_.box(nearest.node));
+      visit(nearest.node, box_of(nearest.node));
       continue;
     }
     for (const EnvironmentNode& child : tree_.children(nearest.node)) {
       if (!free_.any(child)) continue;
-      const double squared = least_squared_distance(tree_.box(child), around);
+      const double squared = least_squared_distance(box_of(child), around);
       if (squared > farthest) continue;
       open_.push_back({squared, child});
       std::ranges::push_heap(open_, is_farther);

@@ -18,37 +18,52 @@ namespace clearway {
 /// not ignored (docs/design/depth.md). Knows for each node of the tree whether it has any.
 class FreePoints {
  public:
-  /// The tree must outlive this object.
-  explicit FreePoints(const EnvironmentTree& tree);
+  /// The tree must outlive this object. cells: those in which points may not be free, each once; of
+  /// all others every point is.
+  FreePoints(const EnvironmentTree& tree, std::span<const std::uint32_t> cells);
 
-  /// Finds the free points of a cell. taken: the points that collide, with a floor or without it,
-  /// bit i of word w being point 64 w + i; words at the end may be missing. Different cells may be
-  /// added at the same time. Throws InputError for a damaged cell.
+  /// Finds the free points of one of these cells. taken: the points that collide, with a floor or
+  /// without it, bit i of word w being point 64 w + i; words at the end may be missing. Different
+  /// cells may be added at the same time. Throws InputError for a damaged cell.
   void add_cell(std::uint32_t cell, std::span<const std::uint64_t> taken,
                 const IgnoredPoints& ignored);
-  /// Called when all cells were added.
+  /// Called when all of these cells were added.
   void finish();
 
   /// Whether the node has a free point.
   bool any(const EnvironmentNode& node) const {
     if (node.top != EnvironmentNode::kInCell) return top_[node.top] != 0;
-    if (node.block_count > 1) return inner_[tree_.inner_index(node)] != 0;
+    if (places_[node.cell] == kAll) return true;
+    if (node.block_count > 1) return inner_[inner_place(node)] != 0;
     return word(node.cell, node.first_block) != 0;
   }
   /// The free points of a block: bit i is set for point i.
   std::uint64_t word(std::uint32_t cell, std::uint32_t block) const {
-    return words_[tree_.block_index(cell, block)];
+    if (places_[cell] == kAll) {
+      return ~std::uint64_t{0} >> (kBlockPoints - tree_.points_in_block(cell, block));
+    }
+    return words_[first_word(cell) + block];
   }
 
-  /// Bytes of memory besides the tree.
-  static std::uint64_t bytes(const PackedCloud& cloud) {
-    return cloud.entry_count() / kBlockPoints * (sizeof(std::uint64_t) + 1) + cloud.tree().size();
+  /// Bytes of memory besides the tree, where so many cells may have points that are not free.
+  static std::uint64_t bytes(const PackedCloud& cloud, std::uint64_t cells) {
+    return cells * cloud.blocks_per_cell() * (sizeof(std::uint64_t) + 1) + cloud.tree().size() +
+           cloud.cells().size() * sizeof(std::uint32_t);
   }
 
  private:
+  static constexpr std::uint32_t kAll = 0xffffffff;
+
   bool mark(const EnvironmentNode& node);
+  std::size_t first_word(std::uint32_t cell) const {
+    return std::size_t{places_[cell]} * tree_.cloud().blocks_per_cell();
+  }
+  std::size_t inner_place(const EnvironmentNode& node) const {
+    return first_word(node.cell) + EnvironmentTree::inner_in_cell(node);
+  }
 
   const EnvironmentTree& tree_;
+  std::vector<std::uint32_t> places_;  ///< of each cell its number among `cells`, or kAll
   std::vector<std::uint64_t> words_;
   std::vector<std::uint8_t> inner_;  ///< 1 for an inner node of a cell that has a free point
   std::vector<std::uint8_t> top_;    ///< the same for nodes of several cells
@@ -67,12 +82,16 @@ class NearestFree {
               std::span<Depth, kBlockPoints> found);
 
   /// Bytes of memory that one of these takes, with some room for its queue.
-  static constexpr std::uint64_t kBytes = std::uint64_t{512} << 10;
+  static std::uint64_t bytes(const PackedCloud& cloud) {
+    return (std::uint64_t{512} << 10) + kKeptCells * cloud.blocks_per_cell() * sizeof(BlockBox);
+  }
 
  private:
   static constexpr std::uint64_t kNone = ~std::uint64_t{0};
   /// Blocks whose free points are kept decoded, by their index in the cloud.
   static constexpr std::size_t kKept = 256;
+  /// Cells whose inner boxes are kept, by their index in the cloud.
+  static constexpr std::size_t kKeptCells = 32;
 
   /// The free points of a block, with places that are infinitely far up to a multiple of kLanes.
   struct FreeBlock {
@@ -100,12 +119,15 @@ class NearestFree {
   void visit(const EnvironmentNode& block, const Box& box);
   void offer(Asked& asked, std::uint64_t entry) const;
   const FreeBlock& free_block(std::uint32_t cell, std::uint32_t block);
+  Box box_of(const EnvironmentNode& node);
   std::uint64_t source_of(std::uint64_t entry) const;
 
   const EnvironmentTree& tree_;
   const PackedCloud& cloud_;
   const FreePoints& free_;
   std::unique_ptr<std::array<FreeBlock, kKept>> kept_;
+  std::array<std::uint32_t, kKeptCells> box_cells_;  ///< cells whose boxes are kept
+  std::vector<BlockBox> boxes_;                      ///< those of each of them, one after the other
   std::vector<Asked> asked_;
   std::vector<Open> open_;
 };

@@ -22,45 +22,53 @@ namespace {
 /// Blocks of a cell that a thread searches at a time.
 constexpr std::uint32_t kBlocksAtOnce = 32;
 
-std::uint64_t bytes_without_threads(const PackedCloud& cloud) {
-  const std::uint64_t blocks = cloud.entry_count() / kBlockPoints;
-  return blocks * sizeof(BlockBox) + FreePoints::bytes(cloud);
-}
-
 /// Bytes of each thread: the rows of the cell that it has begun, and its search.
 std::uint64_t thread_bytes(const PackedCloud& cloud, const Query& query) {
-  return AnswerRows::most_cell_bytes(cloud, query) + NearestFree::kBytes;
+  return AnswerRows::most_cell_bytes(cloud, query) + NearestFree::bytes(cloud);
 }
 
-/// The threads for which there is memory.
-int threads_in(const PackedCloud& cloud, const Query& query, int threads,
+/// The threads for which there is memory beside `free_bytes` for free points.
+int threads_in(const PackedCloud& cloud, const Query& query, std::uint64_t free_bytes, int threads,
                std::uint64_t memory_bytes) {
-  const std::uint64_t least = depth_search_bytes(cloud, query);
-  if (least > memory_bytes) {
+  const std::uint64_t of_thread = thread_bytes(cloud, query);
+  if (free_bytes + of_thread > memory_bytes) {
     throw ResourceError("the depths need more memory", Remedy::kMoreMemory,
-                        static_cast<double>(least));
+                        static_cast<double>(free_bytes + of_thread));
   }
-  const std::uint64_t fit =
-      (memory_bytes - bytes_without_threads(cloud)) / thread_bytes(cloud, query);
+  const std::uint64_t fit = (memory_bytes - free_bytes) / of_thread;
   return static_cast<int>(std::min<std::uint64_t>(static_cast<std::uint64_t>(threads), fit));
 }
 
-/// Finds the free points of all cells.
-void add_free_points(const EnvironmentTree& tree, const Query& query, const AnswerRows& rows,
-                     Progress& progress, FreePoints& free) {
-  const IgnoredPoints ignored(tree.cloud(), query);
+/// The cells in which points may not be free: they collide, with a floor or without it, or are
+/// ignored.
+std::vector<std::uint32_t> cells_not_free(const StoreReader& store, const AnswerRows& rows,
+                                          const IgnoredPoints& ignored) {
+  std::vector<bool> is_one(store.cells().size());
+  for (const PointQuestion question : {PointQuestion::kHits, PointQuestion::kBelow}) {
+    for (const std::uint32_t cell : rows.cells(question)) is_one[cell] = true;
+  }
+  std::vector<std::uint32_t> cells;
+  for (std::uint32_t cell = 0; cell < is_one.size(); ++cell) {
+    if (is_one[cell] || (ignored.any() && ignored.touches(cell))) cells.push_back(cell);
+  }
+  return cells;
+}
+
+/// Finds the free points of the cells in which not all are free.
+void add_free_points(std::span<const std::uint32_t> cells, const IgnoredPoints& ignored,
+                     const AnswerRows& rows, Progress& progress, FreePoints& free) {
   const ParallelScope scope;
   const auto add = piece_of(scope, [&](std::size_t i) {
     throw_if_stopped(progress);
-    const auto cell = static_cast<std::uint32_t>(i);
-    const CellRows hits = rows.read(cell, PointQuestion::kHits);
-    std::vector<std::uint64_t> taken = rows.read(cell, PointQuestion::kBelow).words;
+    const CellRows hits = rows.read(cells[i], PointQuestion::kHits);
+    std::vector<std::uint64_t> taken = rows.read(cells[i], PointQuestion::kBelow).words;
     taken.resize(std::max(taken.size(), hits.words.size()));
     for (std::size_t word = 0; word < hits.words.size(); ++word) taken[word] |= hits.words[word];
-    free.add_cell(cell, taken, ignored);
+    free.add_cell(cells[i], taken, ignored);
   });
   scope.begin();
-  tbb::parallel_for(std::size_t{0}, tree.cloud().cells().size(), add);
+  tbb::parallel_for(std::size_t{0}, cells.size(), add);
+  free.finish();
 }
 
 using Searches = tbb::enumerable_thread_specific<NearestFree>;
@@ -103,23 +111,25 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
 }  // namespace
 
 std::uint64_t depth_search_bytes(const PackedCloud& cloud, const Query& query) {
-  return bytes_without_threads(cloud) + thread_bytes(cloud, query);
+  return FreePoints::bytes(cloud, 0) + thread_bytes(cloud, query);
 }
 
 void find_depths(const StoreReader& store, const Query& query, AnswerRows& rows, int threads,
                  std::uint64_t memory_bytes, Progress& progress) {
-  threads = threads_in(store, query, threads, memory_bytes);
+  const IgnoredPoints ignored(store, query);
+  const std::vector<std::uint32_t> not_free = cells_not_free(store, rows, ignored);
+  threads =
+      threads_in(store, query, FreePoints::bytes(store, not_free.size()), threads, memory_bytes);
   progress.begin("depth", rows.points(PointQuestion::kHits) - rows.points(PointQuestion::kDepths),
                  "points");
   std::vector<std::uint32_t> cells = rows.cells(PointQuestion::kHits);
   std::erase_if(cells,
                 [&](std::uint32_t cell) { return rows.answered(cell, PointQuestion::kDepths); });
   if (!cells.empty()) {
-    const EnvironmentTree tree(store, threads);
-    FreePoints free(tree);
+    const EnvironmentTree tree(store);
+    FreePoints free(tree, not_free);
     in_threads(threads, [&] {
-      add_free_points(tree, query, rows, progress, free);
-      free.finish();
+      add_free_points(not_free, ignored, rows, progress, free);
       Searches searches([&] { return NearestFree(tree, free); });
       const ParallelScope scope;
       const auto search =

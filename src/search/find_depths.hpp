@@ -17,7 +17,8 @@ namespace clearway {
 void find_depths(const StoreReader& store, const Query& query, AnswerRows& rows, int threads,
                  std::uint64_t memory_bytes, Progress& progress);
 
-/// Bytes that find_depths() takes with one thread.
+/// Bytes that find_depths() takes with one thread, besides 9 for each block of the cells in which
+/// points collide or are ignored.
 std::uint64_t depth_search_bytes(const PackedCloud& cloud, const Query& query);
 
 /// Throws UsageError where the store does not hold the whole scans, whose free points would be

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <initializer_list>
 #include <limits>
@@ -132,7 +133,7 @@ class RowStorage {
   /// Keeps a record, which is empty afterwards, and returns its place, which is above kNoRows.
   /// Thread safe.
   virtual std::uint64_t keep(JournalRecord& record) = 0;
-  /// The payload of a record that was kept, in `bytes`. Thread safe.
+  /// The payload of a record that was kept; it may be in `bytes`. Thread safe.
   virtual JournalPayload read(std::uint64_t place, std::vector<std::byte>& bytes) const = 0;
 
   /// Places that no record has.
@@ -154,7 +155,7 @@ class RowsInMemory final : public RowStorage {
  private:
   const std::function<void(std::uint64_t)> grow_;
   mutable std::mutex mutex_;
-  std::vector<std::vector<std::byte>> records_;
+  std::deque<std::vector<std::byte>> records_;
   std::uint64_t bytes_ = 0;
 };
 

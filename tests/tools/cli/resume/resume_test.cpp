@@ -74,6 +74,7 @@ TEST_CASE("an unfinished journal is neither used nor dropped unasked") {
       require_success(run_program(work.folder, "info --json " + quoted(work.journal)));
   check_json(json_of(info), R"({"kind": "journal", "radius": "0.1"})");
   CHECK(json_of(info)["finished_cells"] >= 19);
+  CHECK(json_of(info)["answered_cells"]["hits"] == json_of(info)["finished_cells"]);
 
   check_outcome(work.run("--force"), 0, "journal of an unfinished run removed");
   CHECK(work.files() == Names{"out.h5"});
