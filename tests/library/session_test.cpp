@@ -397,6 +397,35 @@ TEST_CASE("too little memory is refused with the number that would do") {
   CHECK_THROWS_WITH(session.search(query), Contains("of memory is too little"));
 }
 
+TEST_CASE(
+    "a question that finds more than there is memory for ends, and leaves the session usable") {
+  const SessionScene scene;
+  const Query query(scene.models[2],
+                    [] {
+                      Random random(3);
+                      return smooth_path(random, kRoom, 40);
+                    }(),
+                    {.radius = 0.3, .first_pose = true});
+  const auto session_with = [&](std::uint64_t bytes) {
+    return Session(scene.store(), {.device = Device::kCpu, .threads = 1, .memory_bytes = bytes});
+  };
+  const SessionAnswer answer = session_with(std::uint64_t{1} << 30).search(query);
+  REQUIRE(answer.colliding_points > 100);
+  const Session tight = session_with(answer.needed_host_bytes);
+  for (int again = 0; again < 2; ++again) {
+    try {
+      tight.search(query);
+      FAIL("there is no memory for rows");
+    } catch (const ResourceError& error) {
+      CHECK(error.remedy() == Remedy::kMoreMemory);
+      CHECK(error.amount() > static_cast<double>(answer.needed_host_bytes));
+      check_says(error.what(), "too little for what this question finds");
+    }
+  }
+  const Session enough = session_with(answer.needed_host_bytes + (std::uint64_t{1} << 20));
+  CHECK(enough.search(query).colliding_points == answer.colliding_points);
+}
+
 TEST_CASE("a question that waits for memory goes on when there is less or more of it") {
   SharedMemory memory(100);
   std::atomic<bool> stop = false;
