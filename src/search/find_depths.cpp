@@ -114,8 +114,8 @@ std::uint64_t depth_search_bytes(const PackedCloud& cloud, const Query& query) {
   return FreePoints::bytes(cloud, 0) + thread_bytes(cloud, query);
 }
 
-void find_depths(const StoreReader& store, const Query& query, AnswerRows& rows, int threads,
-                 std::uint64_t memory_bytes, Progress& progress) {
+std::uint64_t find_depths(const StoreReader& store, const Query& query, AnswerRows& rows,
+                          int threads, std::uint64_t memory_bytes, Progress& progress) {
   const IgnoredPoints ignored(store, query);
   const std::vector<std::uint32_t> not_free = cells_not_free(store, rows, ignored);
   threads =
@@ -139,6 +139,7 @@ void find_depths(const StoreReader& store, const Query& query, AnswerRows& rows,
     });
   }
   progress.end();
+  return FreePoints::bytes(store, not_free.size()) - FreePoints::bytes(store, 0);
 }
 
 void check_depth(const StoreReader& store, const QueryParameters& query) {

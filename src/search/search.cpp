@@ -523,7 +523,8 @@ class Search {
     // What search_result_bytes() set aside for depths, and what there is to write with
     const std::uint64_t memory = depth_bytes(store_, query_) + found.end.write_bytes;
     try {
-      find_depths(store_, query_, *rows_, options_.threads, memory, progress_);
+      report_.needed_host_bytes +=
+          find_depths(store_, query_, *rows_, options_.threads, memory, progress_);
     } catch (const ResourceError& error) {
       if (error.remedy() != Remedy::kMoreMemory || !(error.amount() > 0)) throw;
       const auto needed = static_cast<std::uint64_t>(error.amount());
