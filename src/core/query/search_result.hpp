@@ -219,8 +219,8 @@ class ProfileSet {
 /// asks for nothing else.
 Query backwards(const Query& query);
 
-/// The greatest index of a pose that touches a colliding point. Between poses it is the start of the
-/// last way that touches it (docs/design/findings.md, "Last poses").
+/// The greatest index of a pose that touches a colliding point. Between poses it is the start of
+/// the last way that touches it (docs/design/findings.md, "Last poses").
 class LastPoses {
  public:
   explicit LastPoses(const Query& query)
