@@ -115,6 +115,7 @@ class Search {
     AllFound found = find_all();
     found.end.engine_end.clear();
     report_.ignored_looked_at = ignored_points_;
+    report_.needed_host_bytes += rows_bytes_;
     const std::uint64_t rows_bytes = in_memory_.allocated_bytes();
     const std::uint64_t write_bytes = found.end.write_bytes;
     const Stopwatch write;

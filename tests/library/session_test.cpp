@@ -411,18 +411,18 @@ TEST_CASE(
   };
   const SessionAnswer answer = session_with(std::uint64_t{1} << 30).search(query);
   REQUIRE(answer.colliding_points > 100);
-  const Session tight = session_with(answer.needed_host_bytes);
+  const Session tight = session_with(answer.needed_host_bytes - 1);
   for (int again = 0; again < 2; ++again) {
     try {
       tight.search(query);
       FAIL("there is no memory for rows");
     } catch (const ResourceError& error) {
       CHECK(error.remedy() == Remedy::kMoreMemory);
-      CHECK(error.amount() > static_cast<double>(answer.needed_host_bytes));
+      CHECK(error.amount() == static_cast<double>(answer.needed_host_bytes));
       check_says(error.what(), "too little for what this question finds");
     }
   }
-  const Session enough = session_with(answer.needed_host_bytes + (std::uint64_t{1} << 20));
+  const Session enough = session_with(answer.needed_host_bytes);
   CHECK(enough.search(query).colliding_points == answer.colliding_points);
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
 
 namespace clearway {
 namespace {
@@ -35,6 +36,19 @@ struct stat status_of(int descriptor, const std::string& name) {
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) fail(name, "read the status");
   return status;
+}
+
+/// Such as "reserve 8,192 bytes, 4,096 of which are missing".
+std::string reserve_text(int descriptor, std::uint64_t bytes) {
+  const std::string text = "reserve " + format_count(bytes) + " bytes";
+  struct statvfs disk {};
+  struct stat status {};
+  if (::fstatvfs(descriptor, &disk) != 0 || ::fstat(descriptor, &status) != 0) return text;
+  constexpr std::uint64_t kBlock = 512;  // the unit of st_blocks
+  const std::uint64_t there = disk.f_bavail * std::uint64_t{disk.f_frsize} +
+                              static_cast<std::uint64_t>(status.st_blocks) * kBlock;
+  if (bytes <= there) return text;
+  return text + ", " + format_count(bytes - there) + " of which are missing";
 }
 
 }  // namespace
@@ -179,10 +193,8 @@ void File::reserve(std::uint64_t bytes) const {
   do {
     error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
   } while (error == EINTR);
-  if (error != 0) {
-    errno = error;
-    fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
-  }
+  if (error != 0)
+    throw system_failure(name_ + ": cannot " + reserve_text(descriptor_, bytes), error);
 }
 
 void File::reserve_ahead(std::uint64_t bytes) const {
@@ -190,7 +202,8 @@ void File::reserve_ahead(std::uint64_t bytes) const {
   while (::fallocate(descriptor_, FALLOC_FL_KEEP_SIZE, 0, static_cast<off_t>(bytes)) != 0) {
     if (errno == EINTR) continue;
     if (errno != ENOSPC && errno != EDQUOT && errno != EFBIG) return;
-    fail(name_, ("reserve " + std::to_string(bytes) + " bytes").c_str());
+    const int error = errno;
+    throw system_failure(name_ + ": cannot " + reserve_text(descriptor_, bytes), error);
   }
 }
 

@@ -76,7 +76,10 @@ TEST_CASE("a run on a disk that is full goes on once there is room") {
       continue;
     }
     check_failed(outcome, disk);
-    without_room_for_the_result += outcome.err.find("out.h5.journal") == std::string::npos;
+    if (outcome.err.find("out.h5.journal") == std::string::npos) {
+      ++without_room_for_the_result;
+      check_says(outcome.err, " bytes,  ... of which are missing: ");
+    }
     if (!disk.files().empty()) {
       REQUIRE(disk.files() == Names{"out.h5.journal"});
       with_journal += JournalReader(journal_of(output)).records() > 0;
