@@ -1,7 +1,6 @@
 #include "cli/verdict.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -391,19 +390,25 @@ void repeat_warnings(const ResultReader& result, const std::string& prefix) {
     warning.text = prefix + warning.text;
     log_message(warning);
   }
+  const auto warn_of_result = [&](const std::string& text) {
+    Message warning;
+    warning.severity = Message::Severity::kWarning;
+    warning.text = result.name() + ": " + text;
+    log_message(warning);
+  };
   const std::vector<std::string> doubts = answer.doubts();
   if (answer.verdict() == Verdict::kConflict && !doubts.empty()) {
-    spdlog::warn("{}: its run warned of {}, so more may collide than it found", result.name(),
-                 fmt::join(doubts, ", "));
+    warn_of_result(fmt::format("its run warned of {}, so more may collide than it found",
+                               fmt::join(doubts, ", ")));
   }
   if (answer.verdict() != Verdict::kUndecided) return;
   if (doubts.empty()) {
     std::vector<std::string> reasons;
     for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
-    spdlog::warn("{}: its verdict is undecided ({})", result.name(), fmt::join(reasons, ", "));
+    warn_of_result(fmt::format("its verdict is undecided ({})", fmt::join(reasons, ", ")));
     return;
   }
-  spdlog::warn("{}: its verdict is undecided, because {}", result.name(), doubt_words(doubts));
+  warn_of_result("its verdict is undecided, because " + doubt_words(doubts));
 }
 
 void add_searched(const SearchedLength& searched, ordered_json& out) {

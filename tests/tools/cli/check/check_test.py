@@ -374,6 +374,7 @@ class Finding(Site):
         undecided = self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far "
                                "--fail-on-collision", 6)
         self.assertIn("undecided", undecided.stdout.splitlines()[-1])
+        self.assertEqual(undecided.stderr.count("its verdict is undecided"), 1)
         self.assertIn("nothing was scanned", undecided.stderr + undecided.stdout)
         self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far", 0)
         self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far --strict", 3)
