@@ -68,6 +68,7 @@ void add_free_points(std::span<const std::uint32_t> cells, const IgnoredPoints& 
   });
   scope.begin();
   tbb::parallel_for(std::size_t{0}, cells.size(), add);
+  scope.end();
   free.finish();
 }
 
@@ -105,6 +106,7 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
     tbb::parallel_for(std::uint32_t{0},
                       static_cast<std::uint32_t>(divide_up(words.size(), kBlocksAtOnce)), search);
   });
+  scope.end();
   rows.add(cell, {{PointQuestion::kDepths, depths}});
 }
 
