@@ -43,8 +43,8 @@ class EnvironmentTree {
   Box box(const EnvironmentNode& node) const {
     return box(node, std::span(inner_boxes_).subspan(first_inner(node)));
   }
-  /// The same in any tree. inner: what fill_inner_boxes() has filled for the node's cell; any where
-  /// the node is a block or several cells.
+  /// A box that holds every point of the node, in any tree. inner: what fill_inner_boxes() has
+  /// filled for the node's cell; it is not read if the node is a block or several cells.
   Box box(const EnvironmentNode& node, std::span<const BlockBox> inner) const;
   /// Fills the boxes of the inner nodes of a cell. inner: a box for each block of a full cell.
   void fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const;

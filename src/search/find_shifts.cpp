@@ -548,13 +548,16 @@ class ShiftSearch {
   /// Codes of the warnings that nothing, or no ground, was scanned at a place.
   static constexpr std::array<std::string_view, 4> kOfPlace{"floats", "leaves-scan",
                                                             "nothing-below", "out-of-reach"};
+  static bool is_of_place(std::string_view code) {
+    return std::ranges::find(kOfPlace, code) != kOfPlace.end();
+  }
 
   /// The codes of the warnings that put a stretch in doubt wherever it is shifted, because the run
   /// gave them and they are not about a place.
   std::vector<std::string> doubts_of_run(PoseRange stretch) const {
     std::set<std::string> codes;
     for (const Message& warning : run_.warnings) {
-      if (std::ranges::find(kOfPlace, warning.code) != kOfPlace.end()) continue;
+      if (is_of_place(warning.code)) continue;
       const Doubt doubt = run_.doubt_of(warning);
       const auto meets = [&](const PoseRange& poses) {
         return poses.first <= stretch.last && stretch.first <= poses.last;
@@ -575,9 +578,8 @@ class ShiftSearch {
     const std::vector<std::string> known = run_.warned_of();
     const bool leaves_out = asked_.ignores_points() || has_floor(query_);
     std::erase_if(codes, [&](const std::string& code) {
-      const bool is_of_place = std::ranges::find(kOfPlace, code) != kOfPlace.end() ||
-                               (leaves_out && code == "below-ground");
-      return !is_of_place || std::ranges::binary_search(known, code);
+      const bool matters = is_of_place(code) || (leaves_out && code == "below-ground");
+      return !matters || std::ranges::binary_search(known, code);
     });
     return codes;
   }
@@ -593,7 +595,7 @@ class ShiftSearch {
       warn_of_query(session_.store().reader(), moved.at(at), answer.ignored, {}, log);
       std::set<std::string> codes;
       for (const Message& warning : found) {
-        if (std::ranges::find(kOfPlace, warning.code) != kOfPlace.end()) codes.insert(warning.code);
+        if (is_of_place(warning.code)) codes.insert(warning.code);
       }
       return codes;
     };

@@ -222,8 +222,7 @@ CollectedPages find_colliding_ignored(const StoreReader& store, const Query& que
   const CollectPage add = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::uint32_t cell = cells[i].cell;
-      CellRows colliding = hit_rows(part_of_cell(found.hits, i, store.blocks_per_cell()),
-                                    part_of_cell(found.first_poses, i, store.cell_entries()));
+      CellRows colliding = hit_rows(store, found, i);
       const CellRows high = colliding.count() > 0 ? heights.high(cell, colliding) : CellRows();
       colliding.poses.clear();
       rows.add(cell, {{PointQuestion::kIgnored, colliding}, {PointQuestion::kIgnoredHigh, high}});

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -55,15 +54,10 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
   std::vector<std::uint32_t> poses(cloud.point_count(), HitSet::kNever);
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto hits = part_of_cell(found.hits, i, cloud.blocks_per_cell());
-      const auto firsts = part_of_cell(found.first_poses, i, cloud.cell_entries());
-      for (std::size_t word = 0; word < hits.size(); ++word) {
-        for (std::uint64_t open = hits[word]; open != 0; open &= open - 1) {
-          const std::size_t entry = 64 * word + static_cast<std::size_t>(std::countr_zero(open));
-          const auto index = static_cast<std::uint32_t>(entry);
-          poses[cloud.source_of(cells[i].cell, index)] = numbers.pose_of(firsts[entry]);
-        }
-      }
+      const CellRows hits = hit_rows(cloud, found, i);
+      hits.for_each([&](std::uint32_t point, std::size_t row) {
+        poses[cloud.source_of(cells[i].cell, point)] = numbers.pose_of(hits.poses[row]);
+      });
     }
   };
   collect_pages(cloud,

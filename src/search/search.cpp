@@ -115,8 +115,8 @@ class Search {
     AllFound found = find_all();
     found.end.engine_end.clear();
     report_.ignored_looked_at = ignored_points_;
-    report_.needed_host_bytes += rows_bytes_;
     const std::uint64_t rows_bytes = in_memory_.allocated_bytes();
+    report_.needed_host_bytes += rows_bytes;
     const std::uint64_t write_bytes = found.end.write_bytes;
     const Stopwatch write;
     static_cast<ResultTables&>(kept) = session_.spare().take_tables();
@@ -407,7 +407,7 @@ class Search {
     if (query_.poses.size() == 1 || cells.empty()) return;
     search_further(found, backwards(query_), &cells, "last poses", PointQuestion::kLast,
                    [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell, {{PointQuestion::kLast, page.hits()}});
+                     rows_->add(cell, {{PointQuestion::kLast, page.hits}});
                    });
   }
 
@@ -450,31 +450,30 @@ class Search {
     if (cells.empty()) return;
     if (!(radius < query_.radius)) {
       for (const std::uint32_t cell : rows_->cells(PointQuestion::kHits)) {
-        const auto all = [](std::uint32_t, std::size_t) { return true; };
-        rows_->add(cell, {{PointQuestion::kCertain,
-                           points_where(rows_->read(cell, PointQuestion::kHits), all)}});
+        if (rows_->answered(cell, PointQuestion::kCertain)) continue;
+        const CellRows all{.words = rows_->read(cell, PointQuestion::kHits).words};
+        rows_->add(cell, {{PointQuestion::kCertain, all}});
       }
     } else if (radius > 0) {
       search_further(found, plain_query(radius, false), &cells, "certain points",
                      PointQuestion::kCertain, [this](std::uint32_t cell, const FoundInCell& page) {
-                       rows_->add(cell, {{PointQuestion::kCertain, page.hits()}});
+                       rows_->add(cell, {{PointQuestion::kCertain, page.hits}});
                      });
     } else if (has_solids(query_)) {
       Query signed_query = plain_query(query_.radius, false);
       signed_query.clearance = query_.radius;
       raise_floors(signed_query, query_.radius - radius);
       const double deeper = -(radius * radius);
-      search_further(
-          found, std::move(signed_query), &cells, "certain points", PointQuestion::kCertain,
-          [this, deeper](std::uint32_t cell, const FoundInCell& page) {
-            const CellRows hits = rows_->read(cell, PointQuestion::kHits);
-            const CellRows signed_distances = page.clearances();
-            const CellRows certain =
-                points_where(signed_distances, [&](std::uint32_t point, std::size_t row) {
-                  return signed_distances.distances[row] < deeper && hits.contains(point);
-                });
-            rows_->add(cell, {{PointQuestion::kCertain, certain}});
-          });
+      search_further(found, std::move(signed_query), &cells, "certain points",
+                     PointQuestion::kCertain,
+                     [this, deeper](std::uint32_t cell, const FoundInCell& page) {
+                       const CellRows hits = rows_->read(cell, PointQuestion::kHits);
+                       const CellRows certain =
+                           points_where(page.clearances, [&](std::uint32_t point, std::size_t row) {
+                             return page.clearances.distances[row] < deeper && hits.contains(point);
+                           });
+                       rows_->add(cell, {{PointQuestion::kCertain, certain}});
+                     });
     }
   }
 
@@ -484,8 +483,9 @@ class Search {
     if (!(radius > query_.radius)) return;
     search_further(found, plain_query(radius, query_.first_pose), only(), "near points",
                    PointQuestion::kNear, [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell, {{PointQuestion::kNear, page.hits_without(rows_->read(
-                                                                  cell, PointQuestion::kHits))}});
+                     rows_->add(cell,
+                                {{PointQuestion::kNear,
+                                  without(page.hits, rows_->read(cell, PointQuestion::kHits))}});
                    });
   }
 
@@ -499,17 +499,16 @@ class Search {
     for (Body& body : query.bodies) body.floor.reset();
     search_further(found, std::move(query), only(), "below the floor", PointQuestion::kBelow,
                    [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell, {{PointQuestion::kBelow, page.hits_without(rows_->read(
-                                                                   cell, PointQuestion::kHits))}});
+                     rows_->add(cell,
+                                {{PointQuestion::kBelow,
+                                  without(page.hits, rows_->read(cell, PointQuestion::kHits))}});
                    });
-    std::uint64_t below = rows_->points(PointQuestion::kBelow);
+    std::uint64_t below = header_.budget ? 0 : rows_->points(PointQuestion::kBelow);
     if (header_.budget) {
       for (const std::uint32_t cell : rows_->cells(PointQuestion::kBelow)) {
-        const CellRows near = rows_->read(cell, PointQuestion::kNear);
-        below -= points_where(rows_->read(cell, PointQuestion::kBelow), [&](std::uint32_t point,
-                                                                            std::size_t) {
-                   return near.contains(point);
-                 }).count();
+        below += without(rows_->read(cell, PointQuestion::kBelow),
+                         rows_->read(cell, PointQuestion::kNear))
+                     .count();
       }
     }
     report_.floor_colliding = below;
@@ -596,18 +595,7 @@ class Search {
 
   /// What a further search found in one cell of a page.
   struct FoundInCell {
-    std::span<const std::uint64_t> words;
-    std::span<const std::uint32_t> first_poses;
-    std::span<const Clearance> all_clearances;
-
-    CellRows hits() const { return hit_rows(words, first_poses); }
-    CellRows clearances() const { return clearance_rows(all_clearances); }
-    /// The hits that are not points of `others`.
-    CellRows hits_without(const CellRows& others) const {
-      std::vector<std::uint64_t> left(words.begin(), words.end());
-      for (std::size_t block = 0; block < left.size(); ++block) left[block] &= ~others.word(block);
-      return hit_rows(left, first_poses);
-    }
+    CellRows hits, clearances;
   };
   using KeepCell = std::function<void(std::uint32_t cell, const FoundInCell&)>;
 
@@ -626,9 +614,7 @@ class Search {
     const MessageLog log(silent, report.warnings);
     const CollectPage collect = [&](std::span<const PlannedCell> of, const PageResult& page) {
       for (std::size_t i = 0; i < of.size(); ++i) {
-        keep(of[i].cell, {part_of_cell(page.hits, i, store_.blocks_per_cell()),
-                          part_of_cell(page.first_poses, i, store_.cell_entries()),
-                          part_of_cell(page.clearances, i, store_.cell_entries())});
+        keep(of[i].cell, {hit_rows(store_, page, i), clearance_rows(store_, page, i)});
       }
     };
     SearchEnd end = engines_.on(report_.device, [&](Device device) {
@@ -670,11 +656,10 @@ class Search {
     }
   }
 
-  /// Takes memory for more rows of an answer in memory. It does not wait for other questions,
-  /// which may wait for this one.
+  /// Takes memory for so many bytes of rows of an answer in memory, in all. It does not wait for
+  /// other questions, which may wait for this one.
   void take_for_rows(std::uint64_t bytes) {
-    rows_bytes_ += bytes;
-    const std::uint64_t needed = report_.needed_host_bytes + rows_bytes_;
+    const std::uint64_t needed = report_.needed_host_bytes + bytes;
     if (memory_.grow(needed)) return;
     throw ResourceError(format_size(options_.memory_bytes) +
                             " of memory is too little for what this question finds: it needs " +
@@ -752,7 +737,6 @@ class Search {
   std::uint64_t ignored_points_ = 0;  ///< in the cells that the first pass searched
   SearchJournal* journal_ = nullptr;  ///< null before it is open, and for an answer in memory
   RowsInMemory in_memory_{[this](std::uint64_t bytes) { take_for_rows(bytes); }};
-  std::uint64_t rows_bytes_ = 0;  ///< what rows take in memory
   std::optional<AnswerRows> rows_in_memory_;
   AnswerRows* rows_ = nullptr;  ///< what was found; null before it is open
 };

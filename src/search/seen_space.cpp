@@ -91,20 +91,12 @@ void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_byt
   swept.bricks.resize(cloud.bricks().size());
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const auto hits = part_of_cell(found.hits, i, cloud.blocks_per_cell());
-      const auto poses = part_of_cell(found.first_poses, i, cloud.cell_entries());
+      CellRows hits = hit_rows(cloud, found, i);
       SweptBrick& brick = swept.bricks[cells[i].cell];
-      std::size_t count = 0;
-      for (const std::uint64_t word : hits) count += static_cast<std::size_t>(std::popcount(word));
-      swept.cubes += count;
-      brick.first_poses.reserve(count);
-      for (std::size_t word = 0; word < hits.size(); ++word) {
-        brick.words[word] = hits[word];
-        for (std::uint64_t open = hits[word]; open != 0; open &= open - 1) {
-          const auto bit = static_cast<std::size_t>(std::countr_zero(open));
-          brick.first_poses.push_back(numbers.pose_of(poses[64 * word + bit]));
-        }
-      }
+      swept.cubes += hits.poses.size();
+      std::ranges::copy(hits.words, brick.words.begin());
+      for (std::uint32_t& pose : hits.poses) pose = numbers.pose_of(pose);
+      brick.first_poses = std::move(hits.poses);
     }
     if (swept.bytes() > most_bytes) refuse_more(kMemoryParts * swept.bytes(), most_bytes);
   };

@@ -94,11 +94,6 @@ void take_column(JournalPayload& payload, bool has, std::uint64_t count,
   std::memcpy(column.data(), bytes.data(), bytes.size());
 }
 
-/// Whether this can be the square of a distance, which is below 0 for a point inside solids.
-bool is_square(const Query& query, double squared) {
-  return std::isfinite(squared) && (squared >= 0 || has_solids(query));
-}
-
 /// Whether a depth is a distance and a source, or neither of the two.
 bool is_depth(double distance, std::uint64_t source) {
   if (std::isnan(distance)) return source == Depth::kNoPoint;
@@ -106,6 +101,20 @@ bool is_depth(double distance, std::uint64_t source) {
 }
 
 }  // namespace
+
+std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64_t block) {
+  const auto bits = payload.take<std::uint64_t>();
+  const std::uint64_t first = block * kBlockPoints;
+  const std::uint64_t points = cell.count > first ? cell.count - first : 0;
+  if (bits == 0 || (points < kBlockPoints && bits >> points != 0)) {
+    payload.refuse("points that the store does not have");
+  }
+  return bits;
+}
+
+bool is_square(const Query& query, double squared) {
+  return std::isfinite(squared) && (squared >= 0 || has_solids(query));
+}
 
 std::vector<PointQuestion> questions_in(JournalPayload& payload) {
   const std::uint64_t count = payload.take_count();
@@ -126,7 +135,9 @@ const char* name_of(PointQuestion question) {
   return kNames[static_cast<std::size_t>(question)];
 }
 
-CellRows hit_rows(std::span<const std::uint64_t> hits, std::span<const std::uint32_t> first_poses) {
+CellRows hit_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index) {
+  const auto hits = part_of_cell(page.hits, index, cloud.blocks_per_cell());
+  const auto first_poses = part_of_cell(page.first_poses, index, cloud.cell_entries());
   CellRows rows{.words = {hits.begin(), hits.end()}};
   if (first_poses.empty()) return rows;
   rows.poses.reserve(rows.count());
@@ -135,7 +146,8 @@ CellRows hit_rows(std::span<const std::uint64_t> hits, std::span<const std::uint
   return rows;
 }
 
-CellRows clearance_rows(std::span<const Clearance> clearances) {
+CellRows clearance_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index) {
+  const auto clearances = part_of_cell(page.clearances, index, cloud.cell_entries());
   CellRows rows{.words = std::vector<std::uint64_t>(clearances.size() / kBlockPoints)};
   for (std::size_t i = 0; i < clearances.size(); ++i) {
     if (clearances[i].found()) rows.words[i / kBlockPoints] |= std::uint64_t{1} << i % kBlockPoints;
@@ -150,12 +162,24 @@ CellRows clearance_rows(std::span<const Clearance> clearances) {
   return rows;
 }
 
+CellRows without(const CellRows& rows, const CellRows& others) {
+  std::vector<std::uint32_t> poses;
+  CellRows out = points_where(rows, [&](std::uint32_t point, std::size_t row) {
+    const bool is_left = !others.contains(point);
+    if (is_left && !rows.poses.empty()) poses.push_back(rows.poses[row]);
+    return is_left;
+  });
+  out.poses = std::move(poses);
+  return out;
+}
+
 std::uint64_t RowsInMemory::keep(JournalRecord& record) {
   const std::span<const std::byte> payload = record.payload();
   const std::lock_guard lock(mutex_);
-  if (grow_) grow_(payload.size() + sizeof(records_[0]));
+  const std::uint64_t bytes = bytes_ + payload.size() + sizeof(records_[0]);
+  if (grow_) grow_(bytes);
   records_.emplace_back(payload.begin(), payload.end());
-  bytes_ += payload.size() + sizeof(records_[0]);
+  bytes_ = bytes;
   record.clear();
   return kNoRows + records_.size();
 }
@@ -222,17 +246,11 @@ std::uint32_t AnswerRows::take_cell(JournalPayload& payload) const {
 CellRows AnswerRows::take_rows(JournalPayload& payload, std::uint32_t cell,
                                PointQuestion question) const {
   CellRows rows;
-  const std::uint64_t points = cloud_.cells()[cell].count;
   for (std::uint64_t words = payload.take_count(); words > 0; --words) {
     const std::uint64_t skipped = payload.take_count();
     const std::uint64_t next = rows.words.size();
     if (skipped >= cloud_.blocks_per_cell() - next) payload.refuse("a block past its cell's end");
-    const std::uint64_t first = (next + skipped) * kBlockPoints;
-    const std::uint64_t here = points > first ? points - first : 0;
-    const auto bits = payload.take<std::uint64_t>();
-    if (bits == 0 || (here < kBlockPoints && bits >> here != 0)) {
-      payload.refuse("points that the store does not have");
-    }
+    const std::uint64_t bits = take_points(payload, cloud_.cells()[cell], next + skipped);
     rows.words.resize(next + skipped);
     rows.words.push_back(bits);
   }

@@ -50,6 +50,12 @@ enum class JournalRecordKind : std::uint8_t {
   kProfile = 4
 };
 
+/// Takes the bits of a block of a cell. Refuses none, and points that the cell does not have.
+std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64_t block);
+
+/// Whether this can be the square of a distance, which is below 0 for a point inside solids.
+bool is_square(const Query& query, double squared);
+
 /// Takes the questions that the record of a cell answers, which stand after its kind.
 std::vector<PointQuestion> questions_in(JournalPayload& payload);
 
@@ -86,10 +92,12 @@ struct CellRows {
   }
 };
 
-/// The points of a page's cell that collide. first_poses: those of all points, or none.
-CellRows hit_rows(std::span<const std::uint64_t> hits, std::span<const std::uint32_t> first_poses);
-/// The points of a page's cell that have a clearance.
-CellRows clearance_rows(std::span<const Clearance> clearances);
+/// The points that collide in cell `index` of a page, with their first poses where it has these.
+CellRows hit_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index);
+/// The points that have a clearance in cell `index` of a page.
+CellRows clearance_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index);
+/// The rows whose points `others` does not have, with their poses alone.
+CellRows without(const CellRows& rows, const CellRows& others);
 /// The points for which keep(point, row) is true, without their values.
 template <typename Keep>
 CellRows points_where(const CellRows& rows, Keep keep) {
@@ -143,8 +151,8 @@ class RowStorage {
 /// Keeps records in memory.
 class RowsInMemory final : public RowStorage {
  public:
-  /// grow: called before so many more bytes are taken; what it throws leaves keep(). None: takes
-  /// what it needs.
+  /// grow: called before more memory is taken, with the bytes that are then taken in all; what it
+  /// throws leaves keep(). None: takes what it needs.
   explicit RowsInMemory(std::function<void(std::uint64_t bytes)> grow = nullptr)
       : grow_(std::move(grow)) {}
 
@@ -214,7 +222,7 @@ class AnswerRows {
   const Query& query_;
   RowStorage& storage_;
   const std::uint32_t pose_end_;  ///< end of the numbers of poses and bodies
-  /// Of each question the place of the record for each cell; none of questions that are not asked
+  /// For each question the place of the record of each cell. A question that is not asked has none.
   std::array<std::vector<std::uint64_t>, kQuestions> places_;
   std::array<std::atomic<std::uint64_t>, kQuestions> points_{};
 };

@@ -179,14 +179,12 @@ CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& 
     offer_profile(cloud, cells, found.profile, profile);
     if (journal != nullptr) journal->append_profile(cells, found.profile, profile);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const CellRows hits = hit_rows(part_of_cell(found.hits, i, cloud.blocks_per_cell()),
-                                     part_of_cell(found.first_poses, i, cloud.cell_entries()));
+      const CellRows hits = hit_rows(cloud, found, i);
       if (!rows.asks(PointQuestion::kClearances)) {
         rows.add(cells[i].cell, {{PointQuestion::kHits, hits}});
         continue;
       }
-      const CellRows clearances =
-          clearance_rows(part_of_cell(found.clearances, i, cloud.cell_entries()));
+      const CellRows clearances = clearance_rows(cloud, found, i);
       rows.add(cells[i].cell,
                {{PointQuestion::kHits, hits}, {PointQuestion::kClearances, clearances}});
     }
@@ -258,32 +256,16 @@ std::uint32_t SearchJournal::take_pose(JournalPayload& payload) const {
   return static_cast<std::uint32_t>(pose);
 }
 
-/// Takes the bits of a word, which must all be points of the cloud.
-std::uint64_t SearchJournal::take_points(JournalPayload& payload, std::uint64_t word) const {
-  const auto bits = payload.take<std::uint64_t>();
-  const std::uint64_t words_per_cell = cloud_.blocks_per_cell();
-  const Cell& cell = cloud_.cells()[word / words_per_cell];
-  const std::uint64_t first = word % words_per_cell * kBlockPoints;
-  const std::uint64_t points = cell.count > first ? cell.count - first : 0;
-  if (bits == 0 || (points < kBlockPoints && bits >> points != 0)) {
-    payload.refuse("points that the store does not have");
-  }
-  return bits;
-}
-
-/// Whether this can be the square of a distance, which stands below 0 for a point inside solids.
-bool SearchJournal::is_square(double squared) const {
-  return squared >= 0 || (has_solids(query_) && squared < 0 && std::isfinite(squared));
-}
-
 void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {
   const std::uint64_t words = cloud_.entry_count() / kBlockPoints;
+  const std::uint64_t words_per_cell = cloud_.blocks_per_cell();
   std::uint64_t word = 0;
   for (std::uint64_t marks = payload.take_count(); marks > 0; --marks) {
     const std::uint64_t skipped = payload.take_count();
     if (skipped >= words - word) payload.refuse("a block that the store does not have");
     word += skipped;
-    const std::uint64_t bits = take_points(payload, word);
+    const std::uint64_t bits =
+        take_points(payload, cloud_.cells()[word / words_per_cell], word % words_per_cell);
     if (!query_.first_pose) {
       if (hits != nullptr) hits->mark_word(word, bits);
       continue;
@@ -300,7 +282,7 @@ void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile)
   for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
     const std::uint32_t pose = take_pose(payload);
     const auto squared = payload.take<double>();
-    if (!(is_square(squared) && squared < limit)) payload.refuse("a distance that is none");
+    if (!(is_square(query_, squared) && squared < limit)) payload.refuse("a distance that is none");
     const std::uint64_t entry = payload.take_count();
     const std::uint64_t cell = entry / cloud_.cell_entries(), index = entry % cloud_.cell_entries();
     if (cell >= cloud_.cells().size() || index >= cloud_.cells()[cell].count) {

@@ -72,11 +72,9 @@ class SearchJournal final : public PoseJournal, public RowStorage {
   void note_finished();
   /// Checks all records but those of cells, and adds what they say to the sets that are not null.
   void replay(HitSet* hits, ProfileSet* profile) const;
-  bool is_square(double squared) const;
   void replay_profile(JournalPayload& payload, ProfileSet* profile) const;
   void replay_marks(JournalPayload& payload, HitSet* hits) const;
   std::uint32_t take_pose(JournalPayload& payload) const;
-  std::uint64_t take_points(JournalPayload& payload, std::uint64_t word) const;
 
   const PackedCloud& cloud_;
   const Query& query_;

@@ -341,10 +341,10 @@ TEST_CASE("rows are read back from the journal, and a record that changes meanwh
 
 TEST_CASE("rows in memory ask for memory, and stop where there is none") {
   const JournalledScene s(true, 0);
-  std::uint64_t left = 1000;
+  std::uint64_t taken = 0;
   RowsInMemory kept([&](std::uint64_t bytes) {
-    if (bytes > left) throw ResourceError("no more");
-    left -= bytes;
+    if (bytes > 1000) throw ResourceError("no more");
+    taken = bytes;
   });
   AnswerRows rows(s.scene.cloud, s.scene.query, kept);
   const CellRows found{.words = {5}, .poses = {7, 3}};
@@ -355,7 +355,7 @@ TEST_CASE("rows in memory ask for memory, and stop where there is none") {
       }(),
       "no more");
   CHECK(cell > 10);
-  CHECK(kept.allocated_bytes() + left == 1000);
+  CHECK(kept.allocated_bytes() == taken);
   CHECK_FALSE(rows.answered(cell, PointQuestion::kHits));
   CHECK(rows.points(PointQuestion::kHits) == 2 * cell);
   const CellRows again = rows.read(cell - 1, PointQuestion::kHits);

@@ -38,6 +38,11 @@ struct stat status_of(int descriptor, const std::string& name) {
   return status;
 }
 
+/// Number of bytes free for this user.
+std::uint64_t free_bytes(const struct statvfs& disk) {
+  return static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
+}
+
 /// Such as "reserve 8,192 bytes, 4,096 of which are missing".
 std::string reserve_text(int descriptor, std::uint64_t bytes) {
   const std::string text = "reserve " + format_count(bytes) + " bytes";
@@ -45,8 +50,8 @@ std::string reserve_text(int descriptor, std::uint64_t bytes) {
   struct stat status {};
   if (::fstatvfs(descriptor, &disk) != 0 || ::fstat(descriptor, &status) != 0) return text;
   constexpr std::uint64_t kBlock = 512;  // the unit of st_blocks
-  const std::uint64_t there = disk.f_bavail * std::uint64_t{disk.f_frsize} +
-                              static_cast<std::uint64_t>(status.st_blocks) * kBlock;
+  const std::uint64_t there =
+      free_bytes(disk) + static_cast<std::uint64_t>(status.st_blocks) * kBlock;
   if (bytes <= there) return text;
   return text + ", " + format_count(bytes - there) + " of which are missing";
 }
@@ -193,8 +198,8 @@ void File::reserve(std::uint64_t bytes) const {
   do {
     error = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
   } while (error == EINTR);
-  if (error != 0)
-    throw system_failure(name_ + ": cannot " + reserve_text(descriptor_, bytes), error);
+  if (error == 0) return;
+  throw system_failure(name_ + ": cannot " + reserve_text(descriptor_, bytes), error);
 }
 
 void File::reserve_ahead(std::uint64_t bytes) const {
@@ -232,7 +237,7 @@ std::filesystem::path folder_of(const std::filesystem::path& path) {
 std::uint64_t free_disk_bytes(const std::filesystem::path& folder) {
   struct statvfs status {};
   if (::statvfs(folder.c_str(), &status) != 0) fail(folder.string(), "ask for free space");
-  return static_cast<std::uint64_t>(status.f_bavail) * status.f_frsize;
+  return free_bytes(status);
 }
 
 namespace {
