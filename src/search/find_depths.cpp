@@ -101,10 +101,14 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
     }
   });
   scope.begin();
-  // Isolated, so that a thread that waits for this cell does not begin another one.
+  // Isolated, so that a thread that waits for this cell does not begin another one. The context is
+  // its own, because the end of another cell by an exception would otherwise end this loop early
+  // and without one, and the depths that are missing would be taken as found.
   tbb::this_task_arena::isolate([&] {
+    tbb::task_group_context own(tbb::task_group_context::isolated);
     tbb::parallel_for(std::uint32_t{0},
-                      static_cast<std::uint32_t>(divide_up(words.size(), kBlocksAtOnce)), search);
+                      static_cast<std::uint32_t>(divide_up(words.size(), kBlocksAtOnce)), search,
+                      own);
   });
   scope.end();
   rows.add(cell, {{PointQuestion::kDepths, depths}});

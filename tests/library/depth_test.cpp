@@ -135,19 +135,26 @@ TEST_CASE("neither threads nor memory nor stops change a byte of depths") {
   }
   CHECK(least < (std::uint64_t{64} << 20));
 
-  std::atomic<bool> stop = false;
-  SearchOptions options{.device = Device::kCpu, .threads = 2, .stop = &stop};
-  options.progress = [&](const ProgressUpdate& update) {
-    stop = stop || (update.stage == "depth" && update.done > 0);
-  };
-  CHECK_THROWS_AS(bytes(options), Interrupted);
-  stop = false;
-  options.progress = nullptr;
-  scene.query.depth = false;
-  options.resume = true;
-  CHECK_THAT(refusal([&] { bytes(options); }), Contains("depth"));
-  scene.query.depth = true;
-  check_same(bytes(options), expected);
+  // Where one cell ends by a stop, those that other threads search end unfinished, and are searched
+  // again.
+  for (std::uint64_t done = 0; done < 16; ++done) {
+    CAPTURE(done);
+    std::atomic<bool> stop = false;
+    SearchOptions options{.device = Device::kCpu, .threads = 4, .stop = &stop};
+    options.progress = [&](const ProgressUpdate& update) {
+      stop = stop || (update.stage == "depth" && update.done > done * 600);
+    };
+    CHECK_THROWS_AS(bytes(options), Interrupted);
+    stop = false;
+    options.progress = nullptr;
+    options.resume = true;
+    if (done == 0) {
+      scene.query.depth = false;
+      CHECK_THAT(refusal([&] { bytes(options); }), Contains("depth"));
+      scene.query.depth = true;
+    }
+    check_same(bytes(options), expected);
+  }
 
   Session session(scene.folder / "wall.h5", {.threads = 2});
   const SessionAnswer answer = session.search(scene.query);
