@@ -16,15 +16,17 @@
 
 namespace clearway {
 
-enum class Engine { kAuto, kSweep, kGrid, kKdtree };  ///< kAuto: chosen by estimate
+/// The engines `grid` and `kdtree` are those of the paper that Clearway starts from: they find the
+/// points that collide with a model of points at its poses, and nothing else.
+enum class Engine { kSweep, kGrid, kKdtree };
 
-const char* name_of(Engine engine);  ///< "auto", "sweep", "grid" or "kdtree"
+const char* name_of(Engine engine);  ///< "sweep", "grid" or "kdtree"
 
 class DeviceStart;
 
 /// How a query is searched. The result's bytes depend on none of these options.
 struct SearchOptions {
-  Engine engine = Engine::kAuto;
+  Engine engine = Engine::kSweep;
   Device device = Device::kAuto;
   std::vector<int> gpus = {};  ///< CUDA's device numbers; empty: the first GPU with room
   int threads = 0;             ///< 0: all cores
@@ -85,16 +87,16 @@ struct SearchReport : Answer {
   /// cells that no pose comes near do not count.
   std::uint64_t ignored_looked_at = 0;
 
-  Engine engine = Engine::kAuto;  ///< the engine that searched
+  Engine engine = Engine::kSweep;  ///< the engine that searched
   Device device = Device::kCpu;
   std::optional<DeviceEstimate> estimate;  ///< the estimate by which kAuto chose the device
   std::string device_name = "the CPU";     ///< name of the device for the user
   std::optional<double> shard_share;       ///< a shard's estimated work, relative to the mean
   std::uint64_t searches = 0;              ///< pairs of a pose and a model point or triangle
   std::uint64_t cells_total = 0;
-  std::uint64_t cells_read = 0;  ///< cells whose points were searched
-  BytesRead bytes_read;          ///< by all parts of the search, until the result was written
-  std::uint64_t resumed_cells = 0, resumed_poses = 0;  ///< known from a journal
+  std::uint64_t cells_read = 0;     ///< cells whose points were searched
+  BytesRead bytes_read;             ///< by all parts of the search, until the result was written
+  std::uint64_t resumed_cells = 0;  ///< cells whose colliding points a journal held
   /// Pages that were run, and the largest size that one may have
   std::uint64_t pages = 0, page_bytes = 0;
   std::uint32_t slots = 0;

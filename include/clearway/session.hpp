@@ -25,7 +25,7 @@ struct SessionOptions {
 
 /// How one question of a session is asked. The answer depends on none of these options.
 struct QuestionOptions {
-  Engine engine = Engine::kAuto;
+  Engine engine = Engine::kSweep;
   bool strict = false;                       ///< any warning ends with InputError
   std::vector<Message> input_warnings = {};  ///< as in SearchOptions
   ProgressCallback progress = nullptr;

@@ -12,31 +12,6 @@
 
 namespace clearway {
 
-BlockCache::BlockCache(const PackedCloud& cloud)
-    : cloud_(cloud), tags_(kEntries, kNothing), entries_(kEntries) {}
-
-Columns BlockCache::block(std::uint32_t cell, std::uint32_t block, std::uint32_t count) {
-  const std::uint64_t tag = std::uint64_t{cell} * cloud_.blocks_per_cell() + block;
-  const std::size_t entry = tag % kEntries;
-  BlockPositions& positions = entries_[entry];
-  if (tags_[entry] != tag) {
-    tags_[entry] = kNothing;
-    decode(cell, block, count, positions);
-    tags_[entry] = tag;
-  }
-  return {positions.at[0], positions.at[1], positions.at[2]};
-}
-
-void BlockCache::decode(std::uint32_t cell, std::uint32_t block, std::uint32_t count,
-                        BlockPositions& out) {
-  if (cell != open_cell_) {
-    open_cell_ = 0xffffffff;
-    chunks_ = cloud_.coordinates(cell);
-    open_cell_ = cell;
-  }
-  out.decode(chunks_, cloud_.quantisation(), block * kBlockPoints, count);
-}
-
 template <typename Element>
 void CellSearchOf<Element>::run(const PageRef& page, std::uint32_t index, const Output& output) {
   page_ = page;
@@ -48,7 +23,7 @@ void CellSearchOf<Element>::run(const PageRef& page, std::uint32_t index, const 
   }
   output_ = output;
   std::fill(output.hits.begin(), output.hits.end(), 0);
-  std::fill(output.first_poses.begin(), output.first_poses.end(), HitSet::kNever);
+  std::fill(output.first_poses.begin(), output.first_poses.end(), kNoPose);
   std::fill(output.clearances.begin(), output.clearances.end(), Clearance{});
   if (!output.clearances.empty()) clearance_search_.emplace(filter_);
   const std::span nodes(page.nodes(*cell_), cell_->node_count);

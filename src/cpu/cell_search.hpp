@@ -12,37 +12,8 @@
 #include "core/sweep/block_descent.hpp"
 #include "core/sweep/clearance_search.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "cpu/range_kernels.hpp"
 
 namespace clearway {
-
-/// Decoded positions of recently used blocks: a direct-mapped cache of fixed size, one for each
-/// thread.
-class BlockCache {
- public:
-  static constexpr std::uint32_t kEntries = 1024;  // 1.5 MiB
-
-  explicit BlockCache(const PackedCloud& cloud);
-
-  /// Positions of the block's `count` points; valid until the next call. Throws InputError if the
-  /// cell's bytes are damaged.
-  Columns block(std::uint32_t cell, std::uint32_t block, std::uint32_t count);
-
-  std::uint64_t allocated_bytes() const {
-    return tags_.size() * sizeof(std::uint64_t) + entries_.size() * sizeof(BlockPositions);
-  }
-
- private:
-  void decode(std::uint32_t cell, std::uint32_t block, std::uint32_t count, BlockPositions& out);
-
-  static constexpr std::uint64_t kNothing = ~std::uint64_t{0};
-
-  const PackedCloud& cloud_;
-  std::vector<std::uint64_t> tags_;
-  std::vector<BlockPositions> entries_;
-  std::uint32_t open_cell_ = 0xffffffff;  ///< the cell that chunks_ belong to
-  std::array<PackedChunk<std::int32_t>, 3> chunks_;
-};
 
 /// The sweep engine's descent within the cells of a page, one cell after another.
 template <typename Element>

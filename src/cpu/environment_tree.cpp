@@ -17,15 +17,6 @@ EnvironmentTree::EnvironmentTree(const PackedCloud& cloud)
       blocks_(cloud.blocks()),
       blocks_per_cell_(cloud.blocks_per_cell()) {}
 
-EnvironmentTree::EnvironmentTree(const PackedCloud& cloud, int threads) : EnvironmentTree(cloud) {
-  inner_boxes_.resize(node_slots());
-#pragma omp parallel for schedule(static) num_threads(threads)
-  for (std::size_t cell = 0; cell < cells_.size(); ++cell) {
-    fill_inner_boxes(static_cast<std::uint32_t>(cell),
-                     std::span(inner_boxes_).subspan(cell * blocks_per_cell_, blocks_per_cell_));
-  }
-}
-
 void EnvironmentTree::fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const {
   unite_blocks(cell, 0, block_count(cells_[cell]), inner);
 }

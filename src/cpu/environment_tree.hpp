@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 #include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/box.hpp"
@@ -23,13 +22,10 @@ struct EnvironmentNode {
   bool is_block() const { return top == kInCell && block_count == 1; }
 };
 
-/// The whole k-d tree of a cloud, from all cells down to blocks. It keeps no points, but at most
-/// the boxes of the inner nodes of cells: 12 bytes for each block. The cloud must outlive it.
+/// The whole k-d tree of a cloud, from all cells down to blocks. It keeps neither points nor boxes;
+/// its users keep the boxes of the inner nodes of some cells. The cloud must outlive it.
 class EnvironmentTree {
  public:
-  /// A tree that keeps the boxes of all cells.
-  EnvironmentTree(const PackedCloud& cloud, int threads);
-  /// A tree without boxes of inner nodes, for callers that keep those of some cells.
   explicit EnvironmentTree(const PackedCloud& cloud);
 
   const PackedCloud& cloud() const { return cloud_; }
@@ -39,12 +35,8 @@ class EnvironmentTree {
   /// The two halves of a node that is not a block.
   std::array<EnvironmentNode, 2> children(const EnvironmentNode& node) const;
 
-  /// A box that holds every point of the node, in a tree that keeps boxes.
-  Box box(const EnvironmentNode& node) const {
-    return box(node, std::span(inner_boxes_).subspan(first_inner(node)));
-  }
-  /// A box that holds every point of the node, in any tree. inner: what fill_inner_boxes() has
-  /// filled for the node's cell; it is not read if the node is a block or several cells.
+  /// A box that holds every point of the node. inner: what fill_inner_boxes() has filled for the
+  /// node's cell; it is not read if the node is a block or several cells.
   Box box(const EnvironmentNode& node, std::span<const BlockBox> inner) const;
   /// Fills the boxes of the inner nodes of a cell. inner: a box for each block of a full cell.
   void fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const;
@@ -55,42 +47,29 @@ class EnvironmentTree {
     return std::uint64_t{cloud_.tree()[node.top].cell_count} * cloud_.cell_entries();
   }
 
-  /// A number below node_slots() that no other inner node of any cell has.
-  std::uint64_t inner_index(const EnvironmentNode& node) const {
-    return std::uint64_t{node.cell} * blocks_per_cell_ + inner_in_cell(node);
-  }
   /// A number below the blocks of a full cell that no other inner node of the cell has.
   static std::uint64_t inner_in_cell(const EnvironmentNode& node) {
     return node.first_block + left_count(node.block_count, 1);
   }
-  /// Index of the block's word in a HitSet.
+  /// Index of a block among those of all cells.
   std::uint64_t block_index(std::uint32_t cell, std::uint32_t block) const {
     return std::uint64_t{cell} * blocks_per_cell_ + block;
   }
-  std::uint64_t node_slots() const { return std::uint64_t{cells_.size()} * blocks_per_cell_; }
 
   std::uint32_t points_in_block(std::uint32_t cell, std::uint32_t block) const {
     const std::uint32_t rest = cells_[cell].count - block * kBlockPoints;
     return rest < kBlockPoints ? rest : kBlockPoints;
   }
 
-  std::uint64_t allocated_bytes() const { return inner_boxes_.capacity() * sizeof(BlockBox); }
-
  private:
   EnvironmentNode from_top(std::uint32_t index) const;
   BlockBox unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count,
                         std::span<BlockBox> inner) const;
-  /// The place of the first inner box of the node's cell.
-  std::size_t first_inner(const EnvironmentNode& node) const {
-    const bool has_inner = node.top == EnvironmentNode::kInCell && node.block_count > 1;
-    return has_inner ? std::size_t{node.cell} * blocks_per_cell_ : 0;
-  }
 
   const PackedCloud& cloud_;
   std::span<const Cell> cells_;
   std::span<const BlockBox> blocks_;
   std::uint32_t blocks_per_cell_;
-  std::vector<BlockBox> inner_boxes_;
 };
 
 }  // namespace clearway

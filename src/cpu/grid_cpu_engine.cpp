@@ -25,8 +25,7 @@ struct GridCpuEngine::Arrays {
         plan(run, layout.cells, layout.page_bytes / sizeof(std::uint32_t)),
         work(run, scene, layout.cells),
         sorted(run.add<std::uint64_t>(work.keys.count)),
-        result(run, work.keys.count / kBlockPoints,
-               {.first_pose = scene.first_pose(), .clearance = false}) {}
+        result(run, work.keys.count / kBlockPoints, {.first_pose = false, .clearance = false}) {}
 
   std::uint64_t lines() const { return divide_up(run.bytes(), sizeof(Line)); }
 
@@ -62,9 +61,7 @@ void GridCpuEngine::Slot::build(const GridScene& scene, const Arrays& arrays) {
   std::ranges::fill(work.occupancy.in(begin()), 0);
   std::ranges::fill(work.group_occupancy.in(begin()), 0);
   std::ranges::fill(work.done.in(begin()), 0);
-  std::ranges::fill(work.latest.in(begin()), HitSet::kNever);
   std::ranges::fill(arrays.result.hits.in(begin()), 0);
-  std::ranges::fill(arrays.result.first_poses.in(begin()), HitSet::kNever);
   const std::uint32_t count = view.page.shape.cells * scene.view().slots;
   const std::span sorted = arrays.sorted.in(begin()).first(count);
   const std::span keys = work.keys.in(begin()), order = work.order.in(begin());
@@ -138,7 +135,6 @@ void GridCpuEngine::start(std::uint32_t index, const PageShape& shape) {
   arrays_->plan.put_into(slot.view, memory);
   arrays_->work.put_into(slot.view, memory);
   slot.view.hits = arrays_->result.hits.in(memory).data();
-  slot.view.first_poses = arrays_->result.first_poses.in(memory).data();
   const GridPlanArrays& plan = arrays_->plan;
   const std::uint64_t tasks = plan_page(scene_, slot.view.page, plan.cells.in(memory),
                                         plan.cell_runs.in(memory), plan.entry_runs.in(memory));

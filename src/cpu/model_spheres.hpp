@@ -43,6 +43,11 @@ class ModelSpheres {
   /// Largest padded size of a leaf.
   std::uint32_t largest_leaf() const { return largest_leaf_; }
 
+  std::uint64_t allocated_bytes() const {
+    return nodes_.capacity() * sizeof(ModelSphere) +
+           (x_.capacity() + y_.capacity() + z_.capacity()) * sizeof(double);
+  }
+
   /// A leaf's points; the last one is repeated up to `padded`.
   Columns columns(const ModelSphere& leaf) const {
     return {x_.data() + leaf.first, y_.data() + leaf.first, z_.data() + leaf.first};

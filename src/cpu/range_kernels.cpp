@@ -44,19 +44,4 @@ void collide_any(Columns environment, std::size_t count, Columns moved, std::siz
   }
 }
 
-CLEARWAY_SIMD_CLONES
-void collide_any_on_way(Columns environment, std::size_t count, Columns moved, Columns next,
-                        std::size_t moved_count, double radius, std::uint8_t* __restrict hit) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 e{environment.x[i], environment.y[i], environment.z[i]};
-    std::int64_t any = 0;
-    for (std::size_t j = 0; j < moved_count; ++j) {
-      const Vec3 a{moved.x[j], moved.y[j], moved.z[j]};
-      const Vec3 b{next.x[j], next.y[j], next.z[j]};
-      any |= collides_on_way(e, a, b, radius) ? 1 : 0;
-    }
-    hit[i] = static_cast<std::uint8_t>(any);
-  }
-}
-
 }  // namespace clearway

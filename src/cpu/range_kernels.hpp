@@ -36,9 +36,4 @@ void transform_points(const Pose& pose, Columns model, std::size_t count, Mutabl
 void collide_any(Columns environment, std::size_t count, Columns moved, std::size_t moved_count,
                  double radius, std::uint8_t* hit);
 
-/// hit[i] = 1 if environment point i collides with any model point on its way from `moved` to
-/// `next`, both ends included, otherwise 0.
-void collide_any_on_way(Columns environment, std::size_t count, Columns moved, Columns next,
-                        std::size_t moved_count, double radius, std::uint8_t* hit);
-
 }  // namespace clearway

@@ -5,90 +5,114 @@
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
+#include "core/util/lane_bits.hpp"
 
 namespace clearway {
 namespace {
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
+/// Greatest width of a leaf of the model's spheres, in search radii.
+constexpr double kLeafRadii = 2;
 /// Number of environment points that are narrowed down together.
 constexpr std::size_t kBatchPoints = 2048;
 /// Candidates that together have at most this many points are taken apart into points.
 constexpr std::uint64_t kGatherPoints = 2048;
 /// A node is split while it is longer than this share of the reach.
 constexpr double kNodeExtent = 0.5;
-/// Depth of the deepest stack of point batches: levels of spheres and of halved runs of poses.
-constexpr std::size_t kDeepest = ModelSpheres::kLevels + std::bit_width(PoseTree::kMostPoses) + 2;
 
 double greatest_extent(const Box& box) { return box.size()[box.longest_axis()]; }
 
+/// Depth of the deepest stack of point batches: levels of spheres and of halved ranges of poses.
+std::size_t deepest(const SpheresOnPath& path) {
+  return ModelSpheres::kLevels + std::bit_width(path.query.poses.size()) + 2;
+}
+
 }  // namespace
 
-RangeSearch::RangeSearch(const EnvironmentTree& environment, ResolvedPoints& resolved,
-                         const ModelSpheres& model, const Query& query, PoseMarkLog& marks)
-    : environment_(environment),
-      resolved_(resolved),
-      model_(model),
-      query_(query),
-      marks_(marks),
-      radius_squared_(rounded_product(query.radius, query.radius)),
-      cache_(environment.cloud()),
-      x_(kDeepest * kBatchPoints),
+SpheresOnPath::SpheresOnPath(const Query& asked, const MotionTree& poses)
+    : query(asked),
+      motion(poses),
+      spheres(asked.model.vertices, kLeafRadii * asked.radius),
+      bounds(pose_bounds(asked.poses, spheres.box())) {}
+
+RangeSearch::RangeSearch(const PackedCloud& cloud, const SpheresOnPath& path)
+    : cloud_(cloud),
+      environment_(cloud),
+      path_(path),
+      query_(path.query),
+      radius_squared_(rounded_product(query_.radius, query_.radius)),
+      inner_boxes_(cloud.blocks_per_cell()),
+      inner_done_(cloud.blocks_per_cell()),
+      decoded_(cloud.blocks_per_cell()),
+      positions_(cloud.blocks_per_cell()),
+      x_(deepest(path) * kBatchPoints),
       y_(x_.size()),
       z_(x_.size()),
-      slots_(x_.size()),
+      points_(x_.size()),
       squared_(kBatchPoints),
       hit_(kBatchPoints),
-      moved_x_(model.largest_leaf()),
-      moved_y_(model.largest_leaf()),
-      moved_z_(model.largest_leaf()) {
-  if (!query.between_poses) return;
-  next_x_.resize(model.largest_leaf());
-  next_y_.resize(model.largest_leaf());
-  next_z_.resize(model.largest_leaf());
+      moved_x_(path.spheres.largest_leaf()),
+      moved_y_(path.spheres.largest_leaf()),
+      moved_z_(path.spheres.largest_leaf()) {}
+
+std::uint64_t RangeSearch::most_bytes(const PackedCloud& cloud, const SpheresOnPath& path) {
+  // Each level of the descent has at most all blocks of the cell as candidates.
+  const std::uint64_t of_block =
+      sizeof(BlockBox) + sizeof(BlockPositions) + 2 + deepest(path) * sizeof(Candidate);
+  const std::uint64_t of_point = 3 * sizeof(double) + sizeof(std::uint32_t);
+  return sizeof(RangeSearch) + cloud.blocks_per_cell() * of_block +
+         deepest(path) * kBatchPoints * of_point + kBatchPoints * (sizeof(double) + 1) +
+         3 * sizeof(double) * path.spheres.largest_leaf();
 }
 
-std::uint64_t RangeSearch::allocated_bytes() const {
-  const std::size_t doubles =
-      4 * x_.size() + squared_.size() + 3 * moved_x_.size() + 3 * next_x_.size();
-  return cache_.allocated_bytes() + doubles * sizeof(double) + hit_.size() +
-         candidates_.capacity() * sizeof(Candidate);
+void RangeSearch::search(const PageRef& page, std::uint32_t index, std::span<std::uint64_t> hits) {
+  page_ = page;
+  index_ = index;
+  hits_ = hits;
+  std::ranges::fill(hits, 0);
+  std::ranges::fill(inner_done_, 0);
+  std::ranges::fill(decoded_, 0);
+  const PageCell& cell = page.cell(index);
+  cell_ = cell.cell;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    chunks_[axis] = packed_chunk(page, cell.chunks[axis], cloud_.cell_points());
+  }
+  environment_.fill_inner_boxes(cell_, inner_boxes_);
+  candidates_.assign(1, candidate_of(environment_.cell(cell_)));
+  for (const std::uint32_t node : std::span(page.nodes(cell), cell.node_count)) {
+    search_nodes(make_task(node, path_.spheres.node(0)), 0, 1);
+  }
 }
 
-RangeSearch::SearchTask RangeSearch::make_task(const PoseNode& poses,
+RangeSearch::SearchTask RangeSearch::make_task(std::uint32_t index,
                                                const ModelSphere& sphere) const {
-  const double reach =
-      (query_.radius + poses.stretch * sphere.radius + poses.spread) * (1 + 16 * kEpsilon) + 1e-150;
-  return {poses, sphere, transform(query_.poses[poses.reference], sphere.centre),
-          reach * reach * (1 + 4 * kEpsilon),
-          !resolved_.first_pose() || poses.reference == poses.first};
+  const MotionNode& node = path_.motion.nodes()[index];
+  const PoseBound& bound = path_.bounds[node.mid];
+  const double reach = (query_.radius + bound.stretch * sphere.radius + node.delta + bound.spread) *
+                           (1 + 16 * kEpsilon) +
+                       1e-150;
+  return {index, node, sphere, transform(query_.poses[node.mid], sphere.centre),
+          reach * reach * (1 + 4 * kEpsilon)};
 }
 
 /// Calls visit(task) for the parts of a task: the halves of its poses if they move more than the
 /// sphere is wide, otherwise its smaller spheres.
 template <typename Visit>
 void RangeSearch::for_each_half(const SearchTask& task, Visit visit) {
-  const PoseNode& poses = task.poses;
+  const MotionNode& poses = task.poses;
   const ModelSphere& sphere = task.sphere;
   const bool split_poses =
-      poses.count > 1 && (sphere.children == 0 || !(poses.spread <= poses.stretch * sphere.radius));
+      poses.count > 1 &&
+      (sphere.children == 0 || !(poses.delta <= path_.bounds[poses.mid].stretch * sphere.radius));
   if (split_poses) {
-    visit(make_task(pose_tree_->node(poses.earlier), sphere));
-    visit(make_task(pose_tree_->node(poses.later), sphere));
+    visit(make_task(task.node + 1, sphere));
+    visit(make_task(poses.later, sphere));
     return;
   }
   for (std::uint32_t i = 0; i < sphere.children; ++i) {
-    visit(make_task(poses, model_.node(sphere.first_child + i)));
+    visit(make_task(task.node, path_.spheres.node(sphere.first_child + i)));
   }
-}
-
-void RangeSearch::search(const PoseTree& poses, const ModelSphere& sphere) {
-  pose_tree_ = &poses;
-  candidates_.clear();
-  gathered_ = 0;
-  const EnvironmentNode root = environment_.root();
-  candidates_.push_back({root, environment_.box(root)});
-  search_nodes(make_task(poses.node(0), sphere), 0, 1);
 }
 
 /// Searches a task's share of the candidates `begin` to `end` - 1, which are those of the parent
@@ -113,14 +137,21 @@ void RangeSearch::search_nodes(const SearchTask& task, std::size_t begin, std::s
 /// Dismisses a node, or marks all of its points. Returns true if it holds nothing that this task
 /// still has to decide.
 bool RangeSearch::dismiss_or_take(const SearchTask& task, const Candidate& candidate) {
-  if (resolved_.node_resolved(candidate.node, task.poses.first)) return true;
+  if (is_done(candidate.node)) return true;
   if (least_squared_distance(candidate.box, task.centre) > task.reach_squared) return true;
-  if (task.hit_is_final && !query_.floor &&
-      greatest_squared_distance(candidate.box, task.centre) < radius_squared_) {
-    mark_node(candidate.node, task.poses.reference);
+  if (greatest_squared_distance(candidate.box, task.centre) < radius_squared_) {
+    take_all(candidate.node);
     return true;
   }
   return false;
+}
+
+void RangeSearch::take_all(const EnvironmentNode& node) {
+  for (std::uint32_t i = 0; i < node.block_count; ++i) {
+    const std::uint32_t block = node.first_block + i;
+    hits_[block] = page_.searched(index_, block);
+  }
+  if (!node.is_block()) inner_done_[EnvironmentTree::inner_in_cell(node)] = 1;
 }
 
 void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candidate) {
@@ -132,12 +163,12 @@ void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candida
     candidate_points_ += environment_.most_points(candidate.node);
     return;
   }
-  bool resolved = true;
+  bool done = true;
   for (const EnvironmentNode& child : environment_.children(candidate.node)) {
-    add_candidate(task, {child, environment_.box(child)});
-    resolved = resolved && resolved_.node_resolved(child, task.poses.first);
+    add_candidate(task, candidate_of(child));
+    done = done && is_done(child);
   }
-  if (resolved) resolved_.resolve_node(candidate.node, task.poses.first);
+  if (done) inner_done_[EnvironmentTree::inner_in_cell(candidate.node)] = 1;
 }
 
 /// Takes the candidates `begin` to `end` - 1 apart into points, batch by batch.
@@ -147,35 +178,38 @@ void RangeSearch::gather(const SearchTask& task, std::size_t begin, std::size_t 
 }
 
 void RangeSearch::gather_node(const SearchTask& task, const Candidate& candidate) {
-  if (candidate.node.is_block()) return gather_block(task, candidate.node);
-  bool resolved = true;
+  if (candidate.node.is_block()) return gather_block(task, candidate.node.first_block);
+  bool done = true;
   for (const EnvironmentNode& child : environment_.children(candidate.node)) {
-    const Candidate part{child, environment_.box(child)};
+    const Candidate part = candidate_of(child);
     if (!dismiss_or_take(task, part)) gather_node(task, part);
-    resolved = resolved && resolved_.node_resolved(child, task.poses.first);
+    done = done && is_done(child);
   }
-  if (resolved) resolved_.resolve_node(candidate.node, task.poses.first);
+  if (done) inner_done_[EnvironmentTree::inner_in_cell(candidate.node)] = 1;
 }
 
-void RangeSearch::gather_block(const SearchTask& task, const EnvironmentNode& node) {
-  const std::uint32_t block = node.first_block;
-  const std::uint64_t open = resolved_.open_points(node.cell, block, task.poses.first);
-  if (open == 0) return resolved_.resolve_node(node, task.poses.first);
+void RangeSearch::gather_block(const SearchTask& task, std::uint32_t block) {
+  const std::uint64_t open = open_points(block);
+  if (open == 0) return;
   if (gathered_ + kBlockPoints > kBatchPoints) flush(task);
-
-  const std::uint32_t count = environment_.points_in_block(node.cell, block);
-  const Columns from = cache_.block(node.cell, block, count);
-  squared_distances(from, count, task.centre, squared_.data());
-  const std::uint64_t first_entry = environment_.block_index(node.cell, block) * kBlockPoints;
-  for (std::uint64_t rest = open; rest != 0; rest &= rest - 1) {
-    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
-    if (squared_[i] < radius_squared_ && counts(from, i, task.poses.reference)) {
-      mark(first_entry + i, task.poses.reference);
-      if (task.hit_is_final) continue;
-    }
-    put_point(gathered_, from, i, first_entry + i);
+  const Columns from = positions_of(block);
+  squared_distances(from, environment_.points_in_block(cell_, block), task.centre, squared_.data());
+  for_each_bit(open, [&](std::uint32_t i) {
+    const std::uint32_t point = block * kBlockPoints + i;
+    if (squared_[i] < radius_squared_) return mark(point);
+    put_point(gathered_, from, i, point);
     gathered_ += squared_[i] > task.reach_squared ? 0 : 1;
+  });
+}
+
+Columns RangeSearch::positions_of(std::uint32_t block) {
+  BlockPositions& positions = positions_[block];
+  if (decoded_[block] == 0) {
+    positions.decode(chunks_, cloud_.quantisation(), block * kBlockPoints,
+                     environment_.points_in_block(cell_, block));
+    decoded_[block] = 1;
   }
+  return {positions.at[0], positions.at[1], positions.at[2]};
 }
 
 void RangeSearch::flush(const SearchTask& task) {
@@ -190,14 +224,13 @@ void RangeSearch::search_points(const SearchTask& task, Points points) {
   const std::size_t begin = points.begin + points.count;
   std::size_t to = begin;
   for (std::size_t i = 0; i < points.count; ++i) {
-    const std::uint64_t slot = slots_[points.begin + i];
-    if (squared_[i] > task.reach_squared) continue;
-    if (resolved_.point_resolved(slot, task.poses.first)) continue;
-    if (squared_[i] < radius_squared_ && counts(from, i, task.poses.reference)) {
-      mark(slot, task.poses.reference);
-      if (task.hit_is_final) continue;
+    const std::uint32_t point = points_[points.begin + i];
+    if (squared_[i] > task.reach_squared || is_done(point)) continue;
+    if (squared_[i] < radius_squared_) {
+      mark(point);
+    } else {
+      put_point(to++, from, i, point);
     }
-    put_point(to++, from, i, slot);
   }
   if (to > begin) refine_points(task, {begin, to - begin});
 }
@@ -208,28 +241,14 @@ void RangeSearch::refine_points(const SearchTask& task, Points points) {
   for_each_half(task, [&](const SearchTask& part) { search_points(part, points); });
 }
 
-/// Puts every pair of a point and a model point of the leaf, or its segment to the next pose, to
-/// the predicate.
+/// Puts every pair of a point and a model point of the leaf to the predicate.
 void RangeSearch::test_points(const SearchTask& task, Points points) {
   const ModelSphere& leaf = task.sphere;
   const MutableColumns moved{moved_x_.data(), moved_y_.data(), moved_z_.data()};
-  const std::uint32_t pose = task.poses.first;
-  transform_points(query_.poses[pose], model_.columns(leaf), leaf.padded, moved);
-  const bool moves_on = query_.between_poses && pose + 1 < query_.poses.size();
-  if (moves_on) {
-    const MutableColumns next{next_x_.data(), next_y_.data(), next_z_.data()};
-    transform_points(query_.poses[pose + 1], model_.columns(leaf), leaf.padded, next);
-    collide_any_on_way(columns(points), points.count, moved, next, leaf.padded, query_.radius,
-                       hit_.data());
-  } else {
-    collide_any(columns(points), points.count, moved, leaf.padded, query_.radius, hit_.data());
-  }
+  transform_points(query_.poses[task.poses.first], path_.spheres.columns(leaf), leaf.padded, moved);
+  collide_any(columns(points), points.count, moved, leaf.padded, query_.radius, hit_.data());
   for (std::size_t i = 0; i < points.count; ++i) {
-    if (hit_[i] == 0) continue;
-    const Columns from = columns(points);
-    if (counts(from, i, pose) || (moves_on && counts(from, i, pose + 1))) {
-      mark(slots_[points.begin + i], pose);
-    }
+    if (hit_[i] != 0) mark(points_[points.begin + i]);
   }
   tested_searches_ += leaf.count;
 }

@@ -9,9 +9,7 @@
 namespace clearway {
 namespace {
 
-ResultParts parts_of(const GridScene& scene) {
-  return {.first_pose = scene.first_pose(), .clearance = false};
-}
+constexpr ResultParts kParts{.first_pose = false, .clearance = false};
 
 /// The layout of a page's work memory, including what the device sorts with. Asks the current
 /// device.
@@ -45,7 +43,7 @@ CudaSlotSize pinned_size(const GridScene& scene, const SlotLayout& layout) {
   const std::uint64_t blocks = std::uint64_t{layout.cells} * scene.view().slots / kBlockPoints;
   ArrayRun plan, result;
   GridPlanArrays(plan, layout.cells, layout.page_bytes / sizeof(std::uint32_t));
-  PageResultArrays(result, blocks, parts_of(scene));
+  PageResultArrays(result, blocks, kParts);
   return {.page = PageShape::aligned(layout.page_bytes),
           .plan = plan.bytes(),
           .result = result.bytes(),
@@ -61,7 +59,7 @@ CudaSlotSize size_of_slot(const GridScene& scene, const SlotLayout& layout) {
 class GridSearch final : public CudaPageSearch {
  public:
   GridSearch(int device, const GridScene& scene, const SlotLayout& layout)
-      : CudaPageSearch(device, parts_of(scene)),
+      : CudaPageSearch(device, kParts),
         scene_(scene),
         on_device_(put_on_device(scene, arrays_)),
         size_(size_of_slot(scene, layout)),
@@ -84,7 +82,6 @@ class GridSearch final : public CudaPageSearch {
     GridPlanArrays(run, page.page.shape.cells, page.page.shape.nodes).put_into(view, page.plan);
     work_.grid.put_into(view, page.work);
     view.hits = page.hits;
-    view.first_poses = page.first_poses;
     build_grids(on_device_.scene, view, work_.sort_in(page.work), page.stream);
     search_grids(on_device_.scene, view, page.tasks, work_.next_task.in(page.work).data(),
                  on_device_.statistics, page.stream);

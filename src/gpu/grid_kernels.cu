@@ -99,16 +99,11 @@ __device__ void search_parts(const GridSceneView& scene, const GridPageView& pag
   }
 }
 
-/// Searches all tasks: each thread block takes one after another until none is left. kHasFloor:
-/// whether the query has a floor. A kernel that knows that there is none is three times as fast,
-/// because it needs fewer registers.
-template <bool kHasFloor>
+/// Searches all tasks: each thread block takes one after another until none is left.
 __global__ void __launch_bounds__(kSearchThreads)
-    search_kernel(const __grid_constant__ GridSceneView query_scene,
+    search_kernel(const __grid_constant__ GridSceneView scene,
                   const __grid_constant__ GridPageView page, std::uint64_t tasks,
                   std::uint64_t* next_task, GridStatistics* total) {
-  GridSceneView scene = query_scene;
-  if constexpr (!kHasFloor) scene.floor = kNoFloor;
   __shared__ SharedLists lists;
   GridStatistics statistics;
   for (;;) {
@@ -127,14 +122,13 @@ __global__ void __launch_bounds__(kSearchThreads)
   add_up(*total, statistics);
 }
 
-using SearchKernel = decltype(&search_kernel<false>);
-
 /// Number of thread blocks of the search that a device runs at once.
-unsigned resident_blocks(SearchKernel kernel) {
+unsigned resident_blocks() {
   int device = 0, processors = 0, blocks = 0;
   check_cuda(cudaGetDevice(&device));
   check_cuda(cudaDeviceGetAttribute(&processors, cudaDevAttrMultiProcessorCount, device));
-  check_cuda(cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, kernel, kSearchThreads, 0));
+  check_cuda(
+      cudaOccupancyMaxActiveBlocksPerMultiprocessor(&blocks, search_kernel, kSearchThreads, 0));
   return static_cast<unsigned>(processors * blocks);
 }
 
@@ -181,18 +175,11 @@ void search_grids(const GridSceneView& scene, const GridPageView& page, std::uin
                   std::uint64_t* next_task, GridStatistics* statistics, cudaStream_t stream) {
   const std::size_t count = entry_count(scene, page);
   check_cuda(cudaMemsetAsync(page.hits, 0, count / 8, stream));
-  if (page.done != nullptr) check_cuda(cudaMemsetAsync(page.done, 0, count / 8, stream));
-  if (page.first_poses != nullptr) {
-    const std::size_t buckets = std::size_t{page.page.shape.cells} * scene.bucket_count;
-    check_cuda(cudaMemsetAsync(page.first_poses, 0xff, count * sizeof(std::uint32_t), stream));
-    check_cuda(cudaMemsetAsync(page.latest, 0xff, buckets * sizeof(std::uint32_t), stream));
-  }
+  check_cuda(cudaMemsetAsync(page.done, 0, count / 8, stream));
   if (tasks == 0) return;
   check_cuda(cudaMemsetAsync(next_task, 0, sizeof(*next_task), stream));
-  const SearchKernel kernel = scene.floor == kNoFloor ? search_kernel<false> : search_kernel<true>;
-  const auto blocks =
-      static_cast<unsigned>(std::min<std::uint64_t>(tasks, resident_blocks(kernel)));
-  kernel<<<blocks, kSearchThreads, 0, stream>>>(scene, page, tasks, next_task, statistics);
+  const auto blocks = static_cast<unsigned>(std::min<std::uint64_t>(tasks, resident_blocks()));
+  search_kernel<<<blocks, kSearchThreads, 0, stream>>>(scene, page, tasks, next_task, statistics);
   check_cuda(cudaGetLastError());
 }
 
@@ -200,8 +187,7 @@ void load_grid_kernels() noexcept {
   cudaFuncAttributes unused;
   cudaFuncGetAttributes(&unused, make_keys_kernel);
   cudaFuncGetAttributes(&unused, place_points_kernel);
-  cudaFuncGetAttributes(&unused, search_kernel<false>);
-  cudaFuncGetAttributes(&unused, search_kernel<true>);
+  cudaFuncGetAttributes(&unused, search_kernel);
 }
 
 }  // namespace clearway

@@ -253,8 +253,6 @@ void add_work_of(py::class_<Report, Answer>& report) {
                     "How many bytes of the store's points were read: a BytesRead.")
       .def_readonly("resumed_cells", &Report::resumed_cells,
                     "How many cells an interrupted search had finished before.")
-      .def_readonly("resumed_poses", &Report::resumed_poses,
-                    "How many poses an interrupted search had finished before.")
       .def_readonly("pages", &Report::pages, "In how many pieces the environment was searched.")
       .def_readonly("page_bytes", &Report::page_bytes,
                     "How many bytes such a piece had at the most.")

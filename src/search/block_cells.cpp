@@ -12,7 +12,7 @@
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/section_search.hpp"
 #include "io/files/thread_limit.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 #include "search/kinds/cuda_kind.hpp"
 
 namespace clearway {

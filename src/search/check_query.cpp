@@ -27,6 +27,14 @@ double metre_of(const StoreReader& store) {
 
 namespace {
 
+[[noreturn]] void refuse_engine(Engine engine, const std::string& what) {
+  throw UsageError(std::string("engine ") + name_of(engine) +
+                       " finds the points that collide at the poses, and nothing else: expected "
+                       "engine sweep for " +
+                       what,
+                   Remedy::kSweepEngine);
+}
+
 [[noreturn]] void refuse_body(const Body& body, const std::string& what) {
   throw InputError(body_words(body.name) + ": " + what);
 }
@@ -65,11 +73,7 @@ void check_poses(const Body& body, const Query& query) {
 
 void check_bodies(const Query& query, const SearchOptions& options) {
   if (query.bodies.empty()) return;
-  if (chosen_engine(options) != Engine::kSweep) {
-    throw UsageError(std::string("engine ") + name_of(options.engine) +
-                         " searches one model, and no vehicle of several bodies",
-                     Remedy::kSweepEngine);
-  }
+  if (options.engine != Engine::kSweep) refuse_engine(options.engine, "vehicles of several bodies");
   if (!query.model.empty()) {
     throw InputError("a query has either a model or bodies");
   }
@@ -77,7 +81,7 @@ void check_bodies(const Query& query, const SearchOptions& options) {
     throw InputError("the vehicle has " + std::to_string(query.bodies.size()) +
                      " bodies, expected at most " + std::to_string(kMostBodies));
   }
-  if (BodyNumbers(query).end(query.poses.size()) >= HitSet::kNever) {
+  if (BodyNumbers(query).end(query.poses.size()) >= kNoPose) {
     throw InputError("the path has " + std::to_string(query.poses.size()) + " poses for " +
                      std::to_string(query.bodies.size()) +
                      " bodies, expected fewer than 2^32 - 1 poses of bodies together");
@@ -91,10 +95,6 @@ void check_bodies(const Query& query, const SearchOptions& options) {
 }
 
 namespace {
-
-[[noreturn]] void refuse_engine(const std::string& engine, const std::string& why) {
-  throw UsageError("engine " + engine + " " + why, Remedy::kSweepEngine);
-}
 
 /// Throws UsageError where seen space is asked for in part, or cannot be known.
 void check_seen(const QueryParameters& query) {
@@ -156,6 +156,31 @@ void check_numbers(const QueryParameters& query, const SearchOptions& options) {
   }
   if (options.overwrite && options.resume) {
     throw UsageError("a run either resumes or overwrites");
+  }
+}
+
+/// Throws UsageError where an engine of the paper is asked for more than the paper's question, or
+/// for a device that it does not have.
+void check_engine(const QueryParameters& query, const SearchOptions& options) {
+  const Engine engine = options.engine;
+  if (engine == Engine::kSweep) return;
+  const std::pair<bool, const char*> more[] = {{query.between_poses, "motion between poses"},
+                                               {query.first_pose, "first poses"},
+                                               {query.clearance > 0, "clearances"},
+                                               {query.profile > 0, "a profile"},
+                                               {query.floor.has_value(), "a floor"},
+                                               {query.has_budget(), "errors"},
+                                               {query.depth, "depths"},
+                                               {query.seen, "seen space"}};
+  for (const auto& [is_asked, what] : more) {
+    if (is_asked) refuse_engine(engine, what);
+  }
+  if (engine == Engine::kKdtree && (options.device == Device::kCuda || !options.gpus.empty() ||
+                                    options.device_memory_bytes > 0)) {
+    throw UsageError(
+        "engine kdtree runs on the CPU alone: GPUs and device memory are of the "
+        "engines sweep and grid",
+        Remedy::kSweepEngine);
   }
 }
 
@@ -237,39 +262,19 @@ void check_floor(const MovingBody& body, bool is_alone) {
 
 }  // namespace
 
-Engine chosen_engine(const SearchOptions& options) {
-  return options.engine == Engine::kAuto ? Engine::kSweep : options.engine;
-}
-
 void check_query(const QueryParameters& query, const SearchOptions& options) {
   check_numbers(query, options);
   check_ignored(query);
-  const Engine engine = chosen_engine(options);
+  check_engine(query, options);
   check_seen(query);
   refuse_depth_in_shard(query, options);
   if (query.clearance > 0 && query.between_poses) {
     throw UsageError(
         "clearances and motion between poses cannot be combined: clearances are at poses");
   }
-  if (query.clearance > 0 && engine != Engine::kSweep) {
-    refuse_engine(name_of(engine), "has no clearances");
-  }
   if (query.profile > 0 && query.between_poses) {
     throw UsageError(
         "a profile and motion between poses cannot be combined: a profile is at poses");
-  }
-  if (query.profile > 0 && engine != Engine::kSweep) {
-    refuse_engine(name_of(engine), "has no profile");
-  }
-  if (query.between_poses && engine == Engine::kGrid) {
-    refuse_engine(name_of(engine), "searches at poses, not between them");
-  }
-  if (engine == Engine::kKdtree && options.device_memory_bytes > 0) {
-    throw UsageError(
-        "device memory is of the engines sweep and grid: engine kdtree runs on the CPU");
-  }
-  if (engine == Engine::kKdtree && (options.device == Device::kCuda || !options.gpus.empty())) {
-    refuse_engine("kdtree", "runs on the CPU alone");
   }
   check_gpus(options);
 }
@@ -285,9 +290,8 @@ void check_gpus(const SearchOptions& options) {
 }
 
 void check_surface(const QueryParameters& query, const SearchOptions& options) {
-  const Engine engine = chosen_engine(options);
-  if (engine != Engine::kSweep) {
-    throw UsageError(std::string("engine ") + name_of(engine) +
+  if (options.engine != Engine::kSweep) {
+    throw UsageError(std::string("engine ") + name_of(options.engine) +
                          " searches models of points, and this model is the surface of a mesh, "
                          "which engine sweep searches",
                      Remedy::kModelPoints);

@@ -12,10 +12,6 @@ double metre_of(const StoreReader& store);
 /// The length of a metre in units of so many metres; 1 where they are not known, which is 0.
 double metre_in_units_of(double metres);
 
-/// The engine that searches with these options, where kAuto stands for kSweep: kSweep, kGrid or
-/// kKdtree.
-Engine chosen_engine(const SearchOptions& options);
-
 /// Throws UsageError, saying what can answer it, where the engine cannot answer a query with these
 /// parameters, whatever its model and poses, or where the options contradict each other.
 void check_query(const QueryParameters& query, const SearchOptions& options);

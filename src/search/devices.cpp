@@ -10,8 +10,7 @@
 #include "core/util/threads.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/check_query.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 
 namespace clearway {
 namespace {
@@ -134,7 +133,7 @@ DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t w
 }
 
 bool may_take_gpus(const SearchOptions& options) {
-  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return false;
+  if (options.engine == Engine::kKdtree || options.device == Device::kCpu) return false;
   if (fallback_allowed(options)) return count_devices() > 0;
   refuse_missing(options.gpus);
   return true;
@@ -147,13 +146,13 @@ DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) 
 bool still_works(const DeviceChoice& choice) { return std::ranges::all_of(choice.gpus, gpu_works); }
 
 DeviceStart::DeviceStart(const SearchOptions& options)
-    : DeviceStart(options, chosen_engine(options) == Engine::kGrid ? CudaKernels::kGrid
-                                                                   : CudaKernels::kSweep) {}
+    : DeviceStart(options,
+                  options.engine == Engine::kGrid ? CudaKernels::kGrid : CudaKernels::kSweep) {}
 
 #ifdef CLEARWAY_CUDA
 
 DeviceStart::DeviceStart(const SearchOptions& options, CudaKernels kernels) {
-  if (chosen_engine(options) == Engine::kKdtree || options.device == Device::kCpu) return;
+  if (options.engine == Engine::kKdtree || options.device == Device::kCpu) return;
   const auto start = [kernels](int gpu) {
     const Stopwatch clock;
     start_cuda_device(gpu, kernels);

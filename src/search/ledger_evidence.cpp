@@ -36,7 +36,7 @@ constexpr double kScannedWithin = 1;
 /// Points of a cell of places.
 constexpr std::uint32_t kCellPoints = 512;
 
-/// The first pose of each point of a cloud, by the number of the point; HitSet::kNever where it
+/// The first pose of each point of a cloud, by the number of the point; kNoPose where it
 /// does not collide.
 std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& query,
                                        std::uint64_t memory_bytes, int threads,
@@ -51,7 +51,7 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
                                                    : cpu_body_kind(cloud, query, options);
   const BodyNumbers numbers(query);
   // Every page writes the entries of its own points.
-  std::vector<std::uint32_t> poses(cloud.point_count(), HitSet::kNever);
+  std::vector<std::uint32_t> poses(cloud.point_count(), kNoPose);
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const CellRows hits = hit_rows(cloud, found, i);
@@ -231,7 +231,7 @@ std::vector<std::vector<LedgerEvidence::Touch>> LedgerEvidence::search(
     std::size_t point = 0;
     for (const std::size_t row : of_group) {
       for (std::size_t i = 0; i < rows[row]->quanta.size(); ++i, ++point) {
-        if (from[point] == HitSet::kNever || back[point] == HitSet::kNever) {
+        if (from[point] == kNoPose || back[point] == kNoPose) {
           touches[row].emplace_back();
         } else {
           // Between poses, a way belongs to both of its poses.

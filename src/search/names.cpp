@@ -10,10 +10,8 @@ const char* name_of(Engine engine) {
       return "grid";
     case Engine::kKdtree:
       return "kdtree";
-    case Engine::kAuto:
-      break;
   }
-  return "auto";
+  return "unknown";
 }
 
 const char* name_of(Device device) {

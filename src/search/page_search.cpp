@@ -6,66 +6,11 @@
 
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "cpu/kdtree_engine.hpp"
 #include "search/memory_budget.hpp"
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
-#include "stream/search_journal.hpp"
-#include "stream/write_result.hpp"
 
 namespace clearway {
-
-namespace {
-
-/// Bytes that are kept to the end of the run, besides what is found.
-std::uint64_t kept_by_kdtree(const StoreReader& store, const Query& query, int threads) {
-  return program_bytes(threads) + input_bytes(store, query) +
-         SearchJournal::most_bytes(store, query, threads) + search_result_bytes(store, query);
-}
-
-/// Adds the colliding points of all cells that have any and are not known yet.
-void add_hits(const StoreReader& store, const HitSet& hits, AnswerRows& rows) {
-  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    if (rows.answered(cell, PointQuestion::kHits)) continue;
-    const std::uint64_t first = std::uint64_t{cell} * store.blocks_per_cell();
-    CellRows found;
-    for (std::uint64_t block = 0; block < store.blocks_per_cell(); ++block) {
-      found.words.push_back(hits.word(first + block));
-    }
-    if (found.count() == 0) continue;
-    if (hits.has_first_pose()) {
-      found.for_each([&](std::uint32_t point, std::size_t) {
-        found.poses.push_back(hits.first_pose(first * kBlockPoints + point));
-      });
-    }
-    rows.add(cell, {{PointQuestion::kHits, found}});
-  }
-}
-
-}  // namespace
-
-std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
-                                  const SearchOptions& options) {
-  return kept_by_kdtree(store, query, options.threads) +
-         std::max(kdtree_memory_bytes(store, query, options.threads),
-                  least_write_bytes(store, query));
-}
-
-SearchEnd search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
-                        const SearchOptions& options, PoseJournal* journal, AnswerRows& rows,
-                        Progress& progress, SearchReport& report) {
-  report.needed_host_bytes = kdtree_needed_bytes(store, query, options);
-  check_memory(report.needed_host_bytes, options.memory_bytes);
-  const Stopwatch compute;
-  KdTreeOptions how{.threads = options.threads, .journal = journal};
-  if (only != nullptr) how.only = [only](std::uint32_t cell) { return only->contains(cell); };
-  KdTreeStatistics counted;
-  const HitSet hits = run_kdtree(store, query, how, progress, &counted);
-  add_hits(store, hits, rows);
-  report.seconds.compute = report.seconds.search = compute.seconds();
-  return {.ignored_points = counted.ignored_points,
-          .write_bytes = options.memory_bytes - kept_by_kdtree(store, query, options.threads)};
-}
 
 namespace {
 

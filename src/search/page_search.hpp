@@ -4,7 +4,6 @@
 #include <functional>
 
 #include "core/query/ignored_points.hpp"
-#include "core/query/pose_journal.hpp"
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
@@ -59,17 +58,5 @@ struct CollectedPages {
 /// Searches for a caller that keeps nothing of the answer by cells. Throws ResourceError as
 /// search_pages() does.
 CollectedPages collect_pages(const PackedCloud& cloud, const PageSearch& asked, Progress& progress);
-
-/// The most bytes that a search with engine kdtree takes, besides the mapped store. options.threads
-/// is not 0.
-std::uint64_t kdtree_needed_bytes(const StoreReader& store, const Query& query,
-                                  const SearchOptions& options);
-
-/// Searches all cells, or those of `only`, with engine kdtree, and adds the colliding points to
-/// `rows`. options.threads is not 0. journal: keeps what is found meanwhile; null where nothing
-/// does. Throws ResourceError where the memory is too little.
-SearchEnd search_kdtree(const StoreReader& store, const Query& query, const ShardCells* only,
-                        const SearchOptions& options, PoseJournal* journal, AnswerRows& rows,
-                        Progress& progress, SearchReport& report);
 
 }  // namespace clearway

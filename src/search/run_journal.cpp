@@ -34,10 +34,7 @@ std::string classes_text(const ResultHeader& header) {
   return text.empty() ? "none" : text;
 }
 
-std::string work_text(const JournalledWork& work) {
-  if (work.poses > 0) return counted(work.poses, "pose") + " finished";
-  return counted(work.cells, "cell") + " finished";
-}
+std::string cells_text(std::uint64_t cells) { return counted(cells, "cell") + " finished"; }
 
 std::string value_of(const JournalIdentity& identity, const std::string& name) {
   for (const auto& [field, value] : identity) {
@@ -139,12 +136,12 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
     return;
   }
   refuse_conversion(path_, read);
-  earlier_ = journalled_work(read);
+  earlier_cells_ = answered_cells(read)[static_cast<std::size_t>(PointQuestion::kHits)];
   if (!options.resume) {
     throw UsageError(path_.string() + ": an unfinished run with engine " +
                          value_of(*read.identity(), "engine") + " on " +
                          value_of(*read.identity(), "device") + ", radius " +
-                         value_of(*read.identity(), "radius") + ", " + work_text(earlier_),
+                         value_of(*read.identity(), "radius") + ", " + cells_text(earlier_cells_),
                      Remedy::kResumeOrOverwrite);
   }
   if (!read.torn().empty()) {
@@ -231,7 +228,7 @@ SearchJournal& RunJournal::open(const StoreReader& store, const Query& query,
       throw UsageError(path_.string() + ": belongs to another run: its " + differs,
                        Remedy::kRestoreOptions);
     }
-    log_.note(path_.string() + ": resumes with " + work_text(earlier_));
+    log_.note(path_.string() + ": resumes with " + cells_text(earlier_cells_));
   }
   if (!unwanted_.empty()) {
     log_.note(path_.string() + ": " + unwanted_);
@@ -245,14 +242,6 @@ Device RunJournal::earlier_device() const {
   if (!read_) return Device::kAuto;
   return value_of(*read_->identity(), "device") == name_of(Device::kCuda) ? Device::kCuda
                                                                           : Device::kCpu;
-}
-
-Engine RunJournal::earlier_engine() const {
-  if (!read_) return Engine::kAuto;
-  for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
-    if (value_of(*read_->identity(), "engine") == name_of(engine)) return engine;
-  }
-  return Engine::kAuto;
 }
 
 void RunJournal::remove_after_publication() {

@@ -37,7 +37,6 @@ class RunJournal {
 
   /// The device of the run that is resumed; kAuto where there is none.
   Device earlier_device() const;
-  Engine earlier_engine() const;
 
   /// Opens the journal for this query, engine and device, in which the answer is kept. An earlier
   /// journal is removed where options ask to overwrite or nothing is in it. Throws UsageError,
@@ -51,8 +50,8 @@ class RunJournal {
 
   const std::filesystem::path& output() const { return output_; }
 
-  /// The work that the earlier run's journal holds.
-  const JournalledWork& earlier() const { return earlier_; }
+  /// The cells whose colliding points the earlier run's journal holds.
+  std::uint64_t earlier_cells() const { return earlier_cells_; }
 
  private:
   bool is_of(const StoreReader& store, const ResultHeader& header) const;
@@ -64,7 +63,7 @@ class RunJournal {
   MessageLog& log_;
   std::filesystem::path path_;
   std::optional<JournalReader> read_;
-  JournalledWork earlier_;
+  std::uint64_t earlier_cells_ = 0;
   /// Why the journal that exists is to be removed; empty where it is to be kept.
   std::string unwanted_;
   bool replaces_;  ///< whether this run overwrites an existing output

@@ -23,7 +23,6 @@
 #include "search/checks/check_floor.hpp"
 #include "search/checks/query_warnings.hpp"
 #include "search/checks/question.hpp"
-#include "search/choose_engine.hpp"
 #include "search/devices.hpp"
 #include "search/find_depths.hpp"
 #include "search/ignored.hpp"
@@ -172,7 +171,7 @@ class Search {
   AllFound find_all() {
     const std::vector<Pass> passes = further_passes();
     const bool end_gpus = std::exchange(options_.end_gpus, false);
-    choose_device_and_engine();
+    choose_device();
     look_at_ground();
     // A question with further searches has all the memory, because these need some of their own.
     if (query_.ignores_points() || query_.has_budget() || query_.seen || query_.depth ||
@@ -181,7 +180,7 @@ class Search {
     }
     options_.end_gpus = end_gpus && passes.empty();
     AllFound found;
-    if (query_.profile > 0) found.profile = ProfileSet(query_.poses.size());
+    if (query_.profile > 0) found.profile = ProfileSet(store_, query_.poses.size());
     find_hits(found);
     found.rows = rows_;
     for (const Pass& pass : passes) {
@@ -304,45 +303,26 @@ class Search {
     throw_if_stopped(progress_);
   }
 
-  void choose_device_and_engine() {
+  void choose_device() {
     options_.threads = threads_or_all(options_.threads);
     const Device device = engines_.choose_device();
-    // What the sweep looks up of a model stays for the next question of a session.
-    if (session_.is_session() && options_.engine == Engine::kAuto) options_.engine = Engine::kSweep;
-    const Engine earlier = file_ ? file_->journal.earlier_engine() : Engine::kAuto;
-    options_.engine = choose_engine(store_, query_, earlier, device == Device::kCuda, options_);
     report_.engine = options_.engine;
-    report_.device = options_.engine == Engine::kKdtree ? Device::kCpu : device;
+    report_.device = device;
   }
 
-  /// The first pass: finds the colliding points, with what is asked about each of them.
+  /// The first pass: finds the colliding points, with what is asked about each of them. A GPU that
+  /// the user did not ask for is given up for the CPU only before the journal is open.
   void find_hits(AllFound& found) {
-    if (options_.engine == Engine::kKdtree) {
-      take_memory(kdtree_needed_bytes(store_, query_, options_) + (file_ ? 0 : kMemoryStep));
-      open_rows(found.profile);
-      found.end =
-          search_kdtree(store_, query_, only(), options_, journal_, *rows_, progress_, report_);
-    } else {
-      find_on_pages(found);
-    }
-    ignored_points_ = found.end.ignored_points;
-    if (file_) {
-      report_.resumed_cells = file_->journal.earlier().cells;
-      report_.resumed_poses = file_->journal.earlier().poses;
-    }
-  }
-
-  void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
-
-  /// Searches page by page. A GPU that the user did not ask for is given up for the CPU only before
-  /// the journal is open.
-  void find_on_pages(AllFound& found) {
     found.end = engines_.on(
         report_.device, [&](Device device) { return find_on(device, found.profile); },
         [&](const ResourceError&) {
           if (journal_ != nullptr) throw;
         });
+    ignored_points_ = found.end.ignored_points;
+    if (file_) report_.resumed_cells = file_->journal.earlier_cells();
   }
+
+  void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
   SearchEnd find_on(Device device, ProfileSet& profile) {
     report_.device = device;
@@ -606,7 +586,6 @@ class Search {
                       PointQuestion question, const KeepCell& keep) {
     further_.query = std::move(query);
     further_.options = options_;
-    if (further_.options.engine == Engine::kKdtree) further_.options.engine = Engine::kSweep;
     // What the first search took is enough, except for rounding in the plan.
     further_.options.memory_bytes += options_.memory_bytes / 16;
     SearchReport report;

@@ -4,10 +4,11 @@
 #include <string>
 
 #include "core/util/format.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 #include "search/kinds/body_kind.hpp"
 #include "search/kinds/cuda_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
+#include "search/kinds/kdtree_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
 
 namespace clearway {
@@ -29,8 +30,7 @@ Device SearchEngines::choose_device() {
 /// grid or kdtree.
 bool SearchEngines::gpu_pays() {
 #ifdef CLEARWAY_CUDA
-  const bool other = options_.engine == Engine::kGrid || options_.engine == Engine::kKdtree;
-  if (!fallback_allowed(options_) || other) return true;
+  if (!fallback_allowed(options_) || options_.engine != Engine::kSweep) return true;
   if (session_.is_session() && query_.poses.size() < kPosesForGpu) return false;
   report_.estimate = estimate_devices(workloads_of(session_.store().reader(), query_), query_,
                                       options_.threads, session_.has_gpus());
@@ -57,8 +57,13 @@ std::unique_ptr<PageEngineKind> SearchEngines::kind([[maybe_unused]] Device devi
     }
 #endif
     if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
-    if (options.engine == Engine::kGrid) {
-      return std::make_unique<CpuGridKind>(cloud, query, options);
+    switch (options.engine) {
+      case Engine::kGrid:
+        return std::make_unique<CpuGridKind>(cloud, query, options);
+      case Engine::kKdtree:
+        return std::make_unique<KdTreeKind>(cloud, query, options);
+      case Engine::kSweep:
+        break;
     }
     return cpu_sweep_kind(cloud, query, options);
   }();

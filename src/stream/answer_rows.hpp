@@ -43,12 +43,7 @@ inline constexpr std::size_t kQuestions = 9;
 const char* name_of(PointQuestion question);
 
 /// The kind of a record in a search's journal; its first byte.
-enum class JournalRecordKind : std::uint8_t {
-  kCell = 1,
-  kMarks = 2,
-  kFinishedPoses = 3,
-  kProfile = 4
-};
+enum class JournalRecordKind : std::uint8_t { kCell = 1, kProfile = 2 };
 
 /// Takes the bits of a block of a cell. Refuses none, and points that the cell does not have.
 std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64_t block);

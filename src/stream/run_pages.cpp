@@ -27,10 +27,7 @@ std::uint64_t entry_of(const PackedCloud& cloud, std::span<const PlannedCell> ce
 void offer_profile(const PackedCloud& cloud, std::span<const PlannedCell> cells,
                    std::span<const ProfileFact> facts, ProfileSet& profile) {
   for (const ProfileFact& fact : facts) {
-    const std::uint32_t cell = cells[fact.point / cloud.cell_entries()].cell;
-    const std::uint32_t index = fact.point % cloud.cell_entries();
-    profile.offer(fact.pose,
-                  {fact.squared, cloud.source_of(cell, index), entry_of(cloud, cells, fact.point)});
+    profile.offer(fact.pose, fact.squared, entry_of(cloud, cells, fact.point));
   }
 }
 

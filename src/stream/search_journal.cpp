@@ -12,41 +12,23 @@
 
 namespace clearway {
 
-JournalledWork journalled_work(const JournalReader& journal) {
-  JournalledWork work;
-  if (journal.identity() && is_of_conversion(*journal.identity())) return work;
-  std::vector<std::pair<std::uint64_t, std::uint64_t>> poses;  // first and count
+std::array<std::uint64_t, kQuestions> answered_cells(const JournalReader& journal) {
+  std::array<std::uint64_t, kQuestions> cells{};
+  if (journal.identity() && is_of_conversion(*journal.identity())) return cells;
   journal.for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {
       case JournalRecordKind::kCell:
         for (const PointQuestion question : questions_in(payload)) {
-          ++work.of_questions[static_cast<std::size_t>(question)];
+          ++cells[static_cast<std::size_t>(question)];
         }
         break;
-      case JournalRecordKind::kFinishedPoses: {
-        const std::uint64_t first = payload.take_count();
-        poses.emplace_back(first, payload.take_count());
-        break;
-      }
-      case JournalRecordKind::kMarks:
       case JournalRecordKind::kProfile:
         break;
       default:
         payload.refuse("of an unknown kind");
     }
   });
-  work.cells = work.of_questions[static_cast<std::size_t>(PointQuestion::kHits)];
-  // With another number of threads the poses are divided differently, so some may have been
-  // finished twice.
-  std::sort(poses.begin(), poses.end());
-  std::uint64_t end = 0;
-  for (const auto& [first, count] : poses) {
-    const std::uint64_t past = first + std::min(count, ~first);
-    if (past <= end) continue;
-    work.poses += past - std::max(first, end);
-    end = past;
-  }
-  return work;
+  return cells;
 }
 
 namespace {
@@ -64,17 +46,16 @@ SearchJournal::SearchJournal(std::filesystem::path path, JournalIdentity identit
     : cloud_(cloud),
       query_(query),
       read_(read),
-      finished_poses_(query.poses.size()),
       path_(std::move(path)),
       identity_(std::move(identity)),
       interval_seconds_(interval_seconds),
       rows_(cloud, query, *this) {
-  note_finished();
-}
-
-bool SearchJournal::poses_finished(std::uint32_t first, std::uint32_t count) const {
-  const auto begin = finished_poses_.begin() + first;
-  return std::find(begin, begin + count, false) == begin + count;
+  if (read_ == nullptr) return;
+  replay(nullptr);  // checks all other records
+  read_->for_each([this](JournalPayload payload) {
+    JournalPayload rest = payload;
+    if (rest.take<JournalRecordKind>() == kCell) rows_.note(payload, payload.place());
+  });
 }
 
 std::uint64_t SearchJournal::append(JournalRecord& record) {
@@ -125,41 +106,6 @@ void SearchJournal::append_profile(std::span<const PlannedCell> cells,
   }
 }
 
-void SearchJournal::append_marks(std::span<PoseMark> marks) {
-  const auto key = [this](const PoseMark& mark) {
-    return std::pair(mark.word, query_.first_pose ? mark.pose : 0);
-  };
-  std::sort(marks.begin(), marks.end(),
-            [&](const PoseMark& a, const PoseMark& b) { return key(a) < key(b); });
-  std::size_t merged = 0;  // number of marks after those of the same word and pose are merged
-  for (std::size_t i = 0; i < marks.size(); ++i) {
-    if (merged > 0 && key(marks[merged - 1]) == key(marks[i])) {
-      marks[merged - 1].bits |= marks[i].bits;
-    } else {
-      marks[merged++] = marks[i];
-    }
-  }
-  JournalRecord record;
-  record.put(kMarks);
-  record.put_count(merged);
-  std::uint64_t word = 0;
-  for (const PoseMark& mark : marks.first(merged)) {
-    record.put_count(mark.word - word);
-    record.put(mark.bits);
-    if (query_.first_pose) record.put_count(mark.pose);
-    word = mark.word;
-  }
-  append(record);
-}
-
-void SearchJournal::append_finished_poses(std::uint32_t first, std::uint32_t count) {
-  JournalRecord record;
-  record.put(kFinishedPoses);
-  record.put_count(first);
-  record.put_count(count);
-  append(record);
-}
-
 std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& query, int threads) {
   constexpr std::uint64_t kPoseBytes = 5;
   // A vector that grows exists twice for a moment, and the new one is twice as large.
@@ -169,7 +115,7 @@ std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& q
                 (sizeof(void*) + 3 * (sizeof(double) + kPoseBytes + JournalRecord::kMostCountBytes))
           : 0;
   const std::uint64_t record = std::max(AnswerRows::most_cell_bytes(cloud, query), of_profile);
-  return static_cast<std::uint64_t>(threads) * record + query.poses.size() / 8;
+  return static_cast<std::uint64_t>(threads) * record;
 }
 
 CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& profile,
@@ -191,44 +137,7 @@ CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& 
   };
 }
 
-}  // namespace clearway
-
-// Reads what a journal's file holds: checks it record by record.
-
-namespace clearway {
-namespace {
-
-using enum JournalRecordKind;
-
-/// A range of poses as a payload gives it, which must lie within the first `most` poses.
-struct TakenPoses {
-  TakenPoses(JournalPayload& payload, std::uint64_t most)
-      : first(payload.take_count()), count(payload.take_count()) {
-    if (first > most || count > most - first) {
-      payload.refuse("poses past the trajectory's end");
-    }
-  }
-  std::uint64_t first, count;
-};
-
-}  // namespace
-
-void SearchJournal::note_finished() {
-  if (read_ == nullptr) return;
-  replay(nullptr, nullptr);  // checks all other records
-  read_->for_each([this](JournalPayload payload) {
-    JournalPayload rest = payload;
-    const auto kind = rest.take<JournalRecordKind>();
-    if (kind == kCell) rows_.note(payload, payload.place());
-    if (kind == kFinishedPoses) {
-      const TakenPoses poses(rest, finished_poses_.size());
-      const auto begin = finished_poses_.begin() + static_cast<std::ptrdiff_t>(poses.first);
-      std::fill_n(begin, poses.count, true);
-    }
-  });
-}
-
-void SearchJournal::replay(HitSet* hits, ProfileSet* profile) const {
+void SearchJournal::replay(ProfileSet* profile) const {
   if (read_ == nullptr) return;
   read_->for_each([&](JournalPayload payload) {
     switch (payload.take<JournalRecordKind>()) {
@@ -237,12 +146,6 @@ void SearchJournal::replay(HitSet* hits, ProfileSet* profile) const {
       case kProfile:
         replay_profile(payload, profile);
         break;
-      case kMarks:
-        replay_marks(payload, hits);
-        break;
-      case kFinishedPoses:
-        TakenPoses(payload, query_.poses.size());
-        break;
       default:
         payload.refuse("of an unknown kind");
     }
@@ -250,37 +153,12 @@ void SearchJournal::replay(HitSet* hits, ProfileSet* profile) const {
   });
 }
 
-std::uint32_t SearchJournal::take_pose(JournalPayload& payload) const {
-  const std::uint64_t pose = payload.take_count();
-  if (pose >= query_.poses.size()) payload.refuse("a pose past the trajectory's end");
-  return static_cast<std::uint32_t>(pose);
-}
-
-void SearchJournal::replay_marks(JournalPayload& payload, HitSet* hits) const {
-  const std::uint64_t words = cloud_.entry_count() / kBlockPoints;
-  const std::uint64_t words_per_cell = cloud_.blocks_per_cell();
-  std::uint64_t word = 0;
-  for (std::uint64_t marks = payload.take_count(); marks > 0; --marks) {
-    const std::uint64_t skipped = payload.take_count();
-    if (skipped >= words - word) payload.refuse("a block that the store does not have");
-    word += skipped;
-    const std::uint64_t bits =
-        take_points(payload, cloud_.cells()[word / words_per_cell], word % words_per_cell);
-    if (!query_.first_pose) {
-      if (hits != nullptr) hits->mark_word(word, bits);
-      continue;
-    }
-    const std::uint32_t pose = take_pose(payload);
-    if (hits == nullptr) continue;
-    for_each_bit(bits, [&](std::uint32_t i) { hits->mark(word * kBlockPoints + i, pose); });
-  }
-}
-
 void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile) const {
   if (!(query_.profile > 0)) payload.refuse("of a profile that was not asked for");
   const double limit = rounded_product(query_.profile, query_.profile);
   for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
-    const std::uint32_t pose = take_pose(payload);
+    const std::uint64_t pose = payload.take_count();
+    if (pose >= query_.poses.size()) payload.refuse("a pose past the trajectory's end");
     const auto squared = payload.take<double>();
     if (!(is_square(query_, squared) && squared < limit)) payload.refuse("a distance that is none");
     const std::uint64_t entry = payload.take_count();
@@ -288,10 +166,7 @@ void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile)
     if (cell >= cloud_.cells().size() || index >= cloud_.cells()[cell].count) {
       payload.refuse("a point that the store does not have");
     }
-    if (profile == nullptr) continue;
-    const std::uint64_t source =
-        cloud_.source_of(static_cast<std::uint32_t>(cell), static_cast<std::uint32_t>(index));
-    profile->offer(pose, {squared, source, entry});
+    if (profile != nullptr) profile->offer(static_cast<std::uint32_t>(pose), squared, entry);
   }
 }
 

@@ -12,7 +12,6 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/page/page_engine.hpp"
-#include "core/query/pose_journal.hpp"
 #include "core/query/search_result.hpp"
 #include "io/result/journal.hpp"
 #include "stream/answer_rows.hpp"
@@ -20,18 +19,13 @@
 
 namespace clearway {
 
-/// How much of a run a journal holds. Throws InputError for a record that is not of a run.
-struct JournalledWork {
-  std::uint64_t cells = 0;  ///< cells whose colliding points are known
-  std::uint64_t poses = 0;  ///< finished poses, from engine kdtree
-  /// Cells that each question has been answered for
-  std::array<std::uint64_t, kQuestions> of_questions{};
-};
-JournalledWork journalled_work(const JournalReader& journal);
+/// How many cells each question has been answered for in the journal of a run. Throws InputError
+/// for a record that is not of a run; none are of the journal of a conversion.
+std::array<std::uint64_t, kQuestions> answered_cells(const JournalReader& journal);
 
-/// The answer of a run as far as it is known, in a journal file: rows cell by cell; from engine
-/// kdtree first marks and finished poses (docs/design/journal.md).
-class SearchJournal final : public PoseJournal, public RowStorage {
+/// The answer of a run as far as it is known, in a journal file: rows cell by cell, and the nearest
+/// points of a profile (docs/design/journal.md).
+class SearchJournal final : public RowStorage {
  public:
   /// Begins a new file, which the first append creates, or continues the one that `read` has read.
   /// Throws InputError naming the first record that cannot belong to this cloud and query. All
@@ -44,7 +38,7 @@ class SearchJournal final : public PoseJournal, public RowStorage {
   const AnswerRows& rows() const { return rows_; }
 
   /// Adds the points of a profile that the file held.
-  void restore(ProfileSet& profile) const { replay(nullptr, &profile); }
+  void restore(ProfileSet& profile) const { replay(&profile); }
   /// Appends the facts of a page of these cells, after `profile` has taken them in and before the
   /// cells are added to the rows. Thread safe.
   void append_profile(std::span<const PlannedCell> cells, std::span<const ProfileFact> facts,
@@ -53,12 +47,6 @@ class SearchJournal final : public PoseJournal, public RowStorage {
   // RowStorage
   std::uint64_t keep(JournalRecord& record) override { return append(record); }
   JournalPayload read(std::uint64_t place, std::vector<std::byte>& bytes) const override;
-
-  // PoseJournal
-  void restore(HitSet& hits) const override { replay(&hits, nullptr); }
-  bool poses_finished(std::uint32_t first, std::uint32_t count) const override;
-  void append_marks(std::span<PoseMark> marks) override;
-  void append_finished_poses(std::uint32_t first, std::uint32_t count) override;
 
   /// Whether the file at this journal's path still is this journal. Must not be called while others
   /// append.
@@ -69,17 +57,13 @@ class SearchJournal final : public PoseJournal, public RowStorage {
 
  private:
   std::uint64_t append(JournalRecord& record);
-  void note_finished();
-  /// Checks all records but those of cells, and adds what they say to the sets that are not null.
-  void replay(HitSet* hits, ProfileSet* profile) const;
+  /// Checks all records but those of cells, and adds what they say to a profile that is not null.
+  void replay(ProfileSet* profile) const;
   void replay_profile(JournalPayload& payload, ProfileSet* profile) const;
-  void replay_marks(JournalPayload& payload, HitSet* hits) const;
-  std::uint32_t take_pose(JournalPayload& payload) const;
 
   const PackedCloud& cloud_;
   const Query& query_;
   const JournalReader* read_;
-  std::vector<bool> finished_poses_;
   std::filesystem::path path_;
   JournalIdentity identity_;
   double interval_seconds_;

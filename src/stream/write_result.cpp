@@ -190,7 +190,7 @@ void for_profile(const StoreReader& store, const ProfileSet& profile,
     const std::uint64_t end = std::min(profile.poses(), first + kPoses);
     clear_rows(rows);
     for (std::uint64_t pose = first; pose < end; ++pose) {
-      const ProfilePoint& point = profile.at(pose);
+      const ProfilePoint point = profile.at(pose);
       const auto cell = static_cast<std::uint32_t>(point.entry / store.cell_entries());
       const auto index = static_cast<std::uint32_t>(point.entry % store.cell_entries());
       rows.distance.push_back(signed_root(point.squared));

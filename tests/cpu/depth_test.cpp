@@ -40,7 +40,7 @@ std::vector<double> signed_distances(const std::vector<Vec3>& points, const Vec3
   const MemoryCloud cloud(quanta, quantisation, {128, 0});
   std::vector<double> distances(points.size(), std::numeric_limits<double>::quiet_NaN());
   for (const Engine& engine : engines()) {
-    if (!engine.clearances) continue;
+    if (!engine.finds_all) continue;
     const SearchResult answer = engine.run(cloud, query, 1);
     for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
       if (!cloud.is_used(slot)) continue;

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "core/geometry/predicate.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/engines.hpp"
 #include "support/scenes.hpp"
 
@@ -14,7 +14,7 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr std::uint32_t kNever = HitSet::kNever;
+constexpr std::uint32_t kNever = kNoPose;
 const Quantisation kBinary{{0x1p-20, 0x1p-20, 0x1p-20}, {0, 0, 0}};
 const Quantisation kMillimetre{{1e-3, 1e-3, 1e-3}, {0, 0, 0}};
 const std::vector<Vec3> kOnePoint{{0, 0, 0}};

@@ -41,7 +41,7 @@ TEST_CASE("the answer does not depend on the number of threads") {
   const auto model = random_points(random, {{-1, -1, -1}, {1, 1, 1}}, 300);
   const auto poses = smooth_path(random, room, 200);
   for (const Engine& engine : engines()) {
-    const Query query{model, poses, {0.1, true}};
+    const Query query{model, poses, {0.1, engine.finds_all}};
     const HitSet expected = engine.run(cloud, query, 1).hits;
     CHECK(expected.count() > 1000);
     for (const int threads : {0, 2, 5, 16}) {
@@ -50,7 +50,7 @@ TEST_CASE("the answer does not depend on the number of threads") {
       std::uint64_t differing = 0;
       for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
         differing += hits.contains(slot) != expected.contains(slot);
-        differing += hits.first_pose(slot) != expected.first_pose(slot);
+        if (engine.finds_all) differing += hits.first_pose(slot) != expected.first_pose(slot);
       }
       check_equal(differing, 0);
     }

@@ -13,7 +13,7 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr std::uint32_t kNeverOnWay = HitSet::kNever;
+constexpr std::uint32_t kNeverOnWay = kNoPose;
 
 /// The first pose of a point e by the definition of version 0.1.0: the least pose that touches e,
 /// or from which a segment starts whose inside touches e. at_pose: whether the pose itself touches

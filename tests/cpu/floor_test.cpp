@@ -3,9 +3,9 @@
 #include <limits>
 
 #include "core/geometry/inside.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/engines.hpp"
 #include "support/solid_scene.hpp"
 
@@ -121,7 +121,7 @@ void check_random_floor(std::uint64_t seed, Counted& counted) {
     all.floor.reset();
     std::uint64_t count = 0;
     for (const std::uint32_t pose : brute_force_first_poses(positions, all)) {
-      count += pose != HitSet::kNever;
+      count += pose != kNoPose;
     }
     return count;
   };

@@ -5,9 +5,9 @@
 #include "core/grid/grid_cell.hpp"
 #include "core/grid/grid_search.hpp"
 #include "core/grid/grid_size.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
@@ -30,9 +30,7 @@ struct SceneOfGrid {
     points = quantise(random_points(random, {{496, -205, -1}, {506, -195, 2}}, count), kMillimetre);
   }
 
-  Query query(bool first_pose = false) const {
-    return {model, poses, {.radius = radius, .first_pose = first_pose}};
-  }
+  Query query() const { return {model, poses, {.radius = radius}}; }
 
   /// The number of points that the run answers wrongly.
   std::uint64_t wrong(const GridRun& run, const MemoryCloudOptions& packing,
@@ -40,14 +38,10 @@ struct SceneOfGrid {
     const auto expected = brute_force_first_poses(positions_of(points, kMillimetre), query());
     const MemoryCloud cloud(points, kMillimetre, packing);
     std::uint64_t count = 0;
-    for (const bool first_pose : {false, true}) {
-      const HitSet hits = run_grid(cloud, query(first_pose), run, statistics);
-      for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-        const bool used = cloud.is_used(slot);
-        const std::uint32_t pose = used ? expected[cloud.source(slot)] : HitSet::kNever;
-        count += hits.contains(slot) != (pose != HitSet::kNever);
-        if (first_pose) count += hits.first_pose(slot) != pose;
-      }
+    const HitSet hits = run_grid(cloud, query(), run, statistics);
+    for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
+      const bool used = cloud.is_used(slot);
+      count += hits.contains(slot) != (used && expected[cloud.source(slot)] != kNoPose);
     }
     return count;
   }
@@ -111,7 +105,7 @@ TEST_CASE("most searches end at a bit, and few pairs need the predicate") {
   const SceneOfGrid scene;
   GridStatistics statistics;
   scene.wrong({}, {1000, 0}, &statistics);
-  CHECK(statistics.points_moved < 2 * 2 * scene.model.size() * scene.poses.size());
+  CHECK(statistics.points_moved < 2 * scene.model.size() * scene.poses.size());
   CHECK(statistics.searches < statistics.points_moved);
   CHECK(statistics.exact_tests * 1000 < statistics.point_tests);
 }
@@ -136,18 +130,6 @@ TEST_CASE("every pose of a page's nodes belongs to one task") {
     CHECK(first.first == node.first);
     CHECK(last.first + last.count == node.first + node.count);
   }
-}
-
-TEST_CASE("what the grid engine does not offer is refused") {
-  const SceneOfGrid scene(100);
-  const MemoryCloud cloud(scene.points, kMillimetre);
-  const MotionTree motion(scene.poses, ModelGroups(scene.model).box());
-  Query query = scene.query();
-  query.between_poses = true;
-  CHECK_THROWS_AS(GridScene(query, motion, cloud), UsageError);
-  query.between_poses = false;
-  query.clearance = 1;
-  CHECK_THROWS_AS(GridScene(query, motion, cloud), UsageError);
 }
 
 TEST_CASE("the grid cell chosen follows radius and density") {

@@ -4,10 +4,10 @@
 #include <string>
 
 #include "core/geometry/predicate.hpp"
-#include "cpu/brute_force.hpp"
 #include "random_scene.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;

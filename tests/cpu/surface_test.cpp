@@ -233,7 +233,7 @@ struct GrazingFilter {
 /// Searches a point by poses alone, without runs, and returns its first pose.
 std::uint32_t first_pose_by_poses(const SweepFilterOf<Triangle>& filter, const Vec3& e,
                                   const std::vector<std::uint32_t>& nodes, SweepStatistics& tests) {
-  std::uint32_t best = HitSet::kNever;
+  std::uint32_t best = kNoPose;
   for (const std::uint32_t index : nodes) {
     const MotionNode& node = filter.motion().nodes()[index];
     const SweepVerdict verdict = filter.ref().look(e, node, tests);
@@ -268,7 +268,7 @@ TEST_CASE("runs of poses take a fraction of the tests that single poses do") {
     ++grazing;
     by_poses.add(tests);
     CHECK(runs.size() < nodes.size());
-    CHECK(filter.touches_runs(e, runs, by_runs) == (first_pose != HitSet::kNever));
+    CHECK(filter.touches_runs(e, runs, by_runs) == (first_pose != kNoPose));
     SweepStatistics unused;
     CHECK(filter.first_pose_of_runs(e, runs, unused) == first_pose);
   }

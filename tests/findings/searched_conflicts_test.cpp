@@ -4,10 +4,10 @@
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "findings/searched_scene.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
 
@@ -41,7 +41,7 @@ struct Scene : SearchedScene {
       moved.poses.push_back(pose);
     }
     for (const std::uint32_t first : brute_force_first_poses(group, moved)) {
-      if (first != HitSet::kNever) return true;
+      if (first != kNoPose) return true;
     }
     return false;
   }
@@ -80,7 +80,7 @@ TEST_CASE("a conflict's poses hold the one of its least distance, and shifts fre
       REQUIRE(conflict.nearest_pose);
       CHECK(conflict.first_pose <= *conflict.nearest_pose);
       CHECK(*conflict.nearest_pose <= conflict.last_pose);
-      std::uint32_t from = HitSet::kNever, to = 0;
+      std::uint32_t from = kNoPose, to = 0;
       std::vector<Vec3> group;
       for (std::size_t row = 0; row < source.size(); ++row) {
         if (conflict_of[row] != conflict.id) continue;

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "clearway/clearway.hpp"
-#include "cpu/brute_force.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "findings/searched_scene.hpp"
 #include "findings/station_oracle.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/station_file.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -46,7 +46,7 @@ std::vector<bool> touched_rows(const StationScene& scene, double every) {
       if (ways) one.poses.push_back(body.poses[k + 1]);
       bool any = false;
       for (const std::uint32_t first : brute_force_first_poses(scene.points, one)) {
-        any = any || first != HitSet::kNever;
+        any = any || first != kNoPose;
       }
       if (!any) continue;
       for (std::size_t row = row_of[at]; row <= row_of[at + (ways ? 1 : 0)]; ++row) out[row] = true;
@@ -529,7 +529,7 @@ TEST_CASE("a row on which the model meets an unseen cube is not clear") {
     Query one(Model{query.model}, {path[i]}, {.radius = 0.1});
     bool any = false;
     for (const std::uint32_t first : brute_force_first_poses(groups.middles, one)) {
-      any = any || first != HitSet::kNever;
+      any = any || first != kNoPose;
     }
     met += any ? 1 : 0;
     if (!any) continue;

@@ -106,11 +106,11 @@ void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
 
 int main(int count, char** arguments) {
   clearway::test_only(
-      {{"sweep on CUDA", clearway::run_exactly<clearway::sweep_on_cuda>, true, true, true,
+      {{"sweep on CUDA", clearway::run_exactly<clearway::sweep_on_cuda>, true,
         clearway::sweep_on_cuda},
        {"sweep on CUDA with kept cells", clearway::run_exactly<clearway::sweep_with_kept_cells>,
-        true, true, true, clearway::sweep_with_kept_cells},
-       {"grid on CUDA", clearway::grid_on_cuda, false, false, false}});
+        true, clearway::sweep_with_kept_cells},
+       {"grid on CUDA", clearway::grid_on_cuda, false}});
   clearway::follow_pages_with(clearway::beams_on_cuda);
   clearway::block_pages_with(clearway::section_on_cuda);
   return run_catch(count, arguments, [] {

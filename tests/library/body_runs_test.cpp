@@ -64,8 +64,8 @@ TEST_CASE("bodies that contradict path or engine are refused by name") {
     CHECK_THROWS_WITH(vehicle.run(options), Contains(words));
     vehicle.query = Vehicle(81).query;
   };
-  refused("searches one model", {.engine = Engine::kKdtree});
-  refused("searches one model", {.engine = Engine::kGrid});
+  refused("vehicles of several bodies", {.engine = Engine::kKdtree});
+  refused("vehicles of several bodies", {.engine = Engine::kGrid});
   vehicle.query.model = {{0, 0, 0}};
   refused("either a model or bodies");
   vehicle.query.bodies[1].name = "front";

@@ -116,9 +116,6 @@ TEST_CASE("neither threads nor memory nor stops change a byte of depths") {
   const std::string expected = bytes_of(scene.folder / "whole.h5");
   CHECK(report.colliding_points > 10'000);
   for (const int threads : {2, 5}) check_same(bytes({.threads = threads}), expected);
-  for (const Engine engine : {Engine::kKdtree, Engine::kGrid}) {
-    check_same(bytes({.engine = engine, .threads = 2}), expected);
-  }
 
   // The least memory that is not refused
   std::uint64_t least = 1 << 20;

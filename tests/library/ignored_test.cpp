@@ -12,11 +12,11 @@
 #include "core/geometry/inside.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/catch.hpp"
 #include "support/classed_scans.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"
 
@@ -76,7 +76,7 @@ class Cloud {
       if (is_ignored(i)) ignored.push_back(places_[i]);
     }
     struct First {
-      std::uint32_t pose = HitSet::kNever;
+      std::uint32_t pose = kNoPose;
       double z = 0;
     };
     std::vector<First> first(ignored.size());
@@ -85,7 +85,7 @@ class Cloud {
       for (const Vec3& p : body.model.vertices) lowest = std::min(lowest, p.z);
       const auto poses = brute_force_first_poses(ignored, body);
       for (std::size_t i = 0; i < poses.size(); ++i) {
-        if (poses[i] == HitSet::kNever) continue;
+        if (poses[i] == kNoPose) continue;
         const std::uint32_t pose = path_pose.empty() ? poses[i] : path_pose[poses[i]];
         if (pose >= first[i].pose) continue;  // at the same pose the first body counts
         first[i] = {pose, pulled_back(body.poses[poses[i]], ignored[i]).z};
@@ -97,7 +97,7 @@ class Cloud {
     }
     Counts out;
     for (const First& of : first) {
-      if (of.pose == HitSet::kNever) continue;
+      if (of.pose == kNoPose) continue;
       ++out.colliding;
       if (of.z - lowest > 0.5) ++out.high;
     }

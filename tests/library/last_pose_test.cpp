@@ -67,16 +67,14 @@ Result search_of(const Vehicle& vehicle, const Query& query, const SearchOptions
 
 }  // namespace
 
-TEST_CASE("every engine finds the last pose that touches each point") {
+TEST_CASE("the last pose that touches each point is found") {
   for (const std::uint64_t seed : {1, 2, 3, 4, 5}) {
     Vehicle vehicle(seed);
     if (seed > 3) vehicle.query.bodies[0].floor = -0.05;
     const Query query = one_model(vehicle, false);
     const auto expected = last_by_hand(vehicle.places, query, {});
-    for (const Engine engine : {Engine::kSweep, Engine::kGrid, Engine::kKdtree}) {
-      CAPTURE(seed, name_of(engine));
-      check_last_poses(search_of(vehicle, query, {.engine = engine, .threads = 2}), expected);
-    }
+    CAPTURE(seed);
+    check_last_poses(search_of(vehicle, query, {.threads = 2}), expected);
   }
 }
 
@@ -86,10 +84,8 @@ TEST_CASE("between poses the last pose is the start of the last way that touches
     if (seed > 5) vehicle.query.bodies[0].floor = -0.05;
     const Query query = one_model(vehicle, true);
     const auto expected = last_by_hand(vehicle.places, query, {});
-    for (const Engine engine : {Engine::kSweep, Engine::kKdtree}) {
-      CAPTURE(seed, name_of(engine));
-      check_last_poses(search_of(vehicle, query, {.engine = engine, .threads = 2}), expected);
-    }
+    CAPTURE(seed);
+    check_last_poses(search_of(vehicle, query, {.threads = 2}), expected);
   }
 }
 
@@ -107,11 +103,8 @@ TEST_CASE("last poses of surfaces and solids, and without ignored points") {
                    last_by_hand(vehicle.places, inside, {}));
   vehicle.query.ignore_boxes = {{{100, -200, 0}, {102, -197, 1}}};
   Query ignoring = one_model(vehicle, false);
-  ignoring.model.triangles.clear();  // kdtree searches points
-  for (const Engine engine : {Engine::kSweep, Engine::kKdtree}) {
-    check_last_poses(search_of(vehicle, ignoring, {.engine = engine, .threads = 2}),
-                     last_by_hand(vehicle.searched_places(), ignoring, {}));
-  }
+  check_last_poses(search_of(vehicle, ignoring, {.threads = 2}),
+                   last_by_hand(vehicle.searched_places(), ignoring, {}));
 }
 
 TEST_CASE("last poses of a vehicle's bodies are of the path, at poses and between them") {

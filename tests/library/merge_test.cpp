@@ -21,9 +21,9 @@ const std::vector<Mode>& modes() {
   static const std::vector<Engine> kAll{Engine::kSweep, Engine::kGrid, Engine::kKdtree};
   static const std::vector<Mode> kModes{
       {"set", kAll, [](Query&) {}},
-      {"first poses", kAll, [](Query& query) { query.first_pose = true; }},
+      {"first poses", {Engine::kSweep}, [](Query& query) { query.first_pose = true; }},
       {"between poses",
-       {Engine::kSweep, Engine::kKdtree},
+       {Engine::kSweep},
        [](Query& query) { query.between_poses = query.first_pose = true; }},
       {"clearances", {Engine::kSweep}, [](Query& query) { query.clearance = 0.2; }},
       {"profile", {Engine::kSweep}, [](Query& query) { query.profile = 0.3; }},
@@ -64,7 +64,6 @@ TEST_CASE("merged parts have the bytes of the search of everything") {
 
 TEST_CASE("parts of different engines make one result") {
   Shards shards({.engine = Engine::kSweep}), others({.engine = Engine::kKdtree});
-  shards.scene.query.first_pose = others.scene.query.first_pose = true;
   auto parts = shards.parts(3);
   parts[1] = others.parts(3)[1];
   CHECK(shards.merged(parts) == shards.whole());

@@ -27,7 +27,7 @@ const Box kRoom{{100, -200, 0}, {104, -197, 1}};
 /// A question, and how it is asked.
 struct Asked {
   Query query;
-  Engine engine = Engine::kAuto;
+  Engine engine = Engine::kSweep;
 };
 
 /// A scan with classes and origins, and models of all kinds.

@@ -7,9 +7,9 @@
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "io/result/conflicts/shift_file.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
@@ -90,7 +90,7 @@ struct Scene {
         moved.poses.push_back(pose);
       }
       for (const std::uint32_t touch : brute_force_first_poses(searched, moved)) {
-        if (touch != HitSet::kNever) return false;
+        if (touch != kNoPose) return false;
       }
     }
     return true;

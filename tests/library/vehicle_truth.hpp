@@ -6,14 +6,14 @@
 
 #include "core/geometry/predicate.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "library/vehicle_scene.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 
 /// Runs of vehicles against brute force, body by body, merged by hand.
 namespace clearway::test {
 
-inline constexpr std::uint32_t kNever = HitSet::kNever;
+inline constexpr std::uint32_t kNever = kNoPose;
 
 /// The first pose of the path at which a point collides, and the body; kNever where none does.
 struct First {

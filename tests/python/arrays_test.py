@@ -322,7 +322,7 @@ class Errors(SceneTest):
         with self.assertRaises(clearway.UsageError) as caught:
             clearway.search(store, self.query(), self.folder / "there.h5")
         self.assertEqual(caught.exception.remedy, "overwrite")
-        with self.assertRaisesRegex(clearway.UsageError, "engine 'fast': expected one of auto, sweep"):
+        with self.assertRaisesRegex(clearway.UsageError, "engine 'fast': expected one of sweep, grid"):
             self.search(engine="fast")
 
     def test_input(self):

@@ -80,7 +80,7 @@ class Watching(SceneTest):
         counter.start()
         # The search ends only because the other thread comes to its end.
         with self.assertRaises(clearway.Interrupted):
-            self.search("slow.h5", self.slow_query(), engine="kdtree", threads=1,
+            self.search("slow.h5", self.slow_query(), engine="grid", threads=1,
                         stop=Flag(lambda: counted == 1_000_000))
         counter.join()
 
@@ -91,7 +91,7 @@ class Watching(SceneTest):
                 interrupt.sent = True
 
         with self.assertRaises(KeyboardInterrupt):
-            self.search("slow.h5", self.slow_query(), engine="kdtree", threads=1,
+            self.search("slow.h5", self.slow_query(), engine="grid", threads=1,
                         progress=lambda u: None if hasattr(interrupt, "sent") else interrupt(u))
         self.assertFalse((self.folder / "slow.h5").exists())
 
@@ -102,7 +102,7 @@ class Watching(SceneTest):
             "scene.SceneTest.setUpClass()\n"
             "begun, test = threading.Event(), scene.SceneTest()\n"
             "def search():\n"
-            "    test.search('out.h5', test.slow_query(), engine='kdtree', threads=1,\n"
+            "    test.search('out.h5', test.slow_query(), engine='grid', threads=1,\n"
             "                progress=lambda update: begun.set())\n"
             "threading.excepthook = lambda args: print(args.exc_type.__name__)\n"
             "threading.Thread(target=search, daemon=True).start()\n"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 

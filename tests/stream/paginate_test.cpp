@@ -5,11 +5,11 @@
 #include "clearway/error.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "planned_scene.hpp"
 #include "stream/plan.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -170,7 +170,7 @@ TEST_CASE("every cell with a colliding point is planned, with the point's first 
   for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
     if (!scene.cloud.is_used(slot)) continue;
     const std::uint32_t pose = first_poses[scene.cloud.source(slot)];
-    if (pose == HitSet::kNever) continue;
+    if (pose == kNoPose) continue;
     ++colliding;
     const auto cell = std::find_if(
         scene.cells.begin(), scene.cells.end(),

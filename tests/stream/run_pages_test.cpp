@@ -2,10 +2,10 @@
 #include <new>
 
 #include "clearway/error.hpp"
-#include "cpu/brute_force.hpp"
 #include "run_fixture.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -22,8 +22,8 @@ std::uint64_t wrong_slots(const PlannedScene& scene, const SearchResult& answer)
   std::uint64_t wrong = 0;
   for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
     const bool used = scene.cloud.is_used(slot);
-    const std::uint32_t pose = used ? first_poses[scene.cloud.source(slot)] : HitSet::kNever;
-    wrong += answer.hits.contains(slot) != (pose != HitSet::kNever);
+    const std::uint32_t pose = used ? first_poses[scene.cloud.source(slot)] : kNoPose;
+    wrong += answer.hits.contains(slot) != (pose != kNoPose);
     if (scene.query.first_pose) wrong += answer.hits.first_pose(slot) != pose;
     if (scene.query.clearance > 0) {
       Clearance expected;

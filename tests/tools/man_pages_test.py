@@ -56,7 +56,7 @@ class ManPages(unittest.TestCase):
     def test_values_and_limits(self):
         run = shown(self.pages["clearway-run"])
         self.assertRegex(run, r"\n--radius METRES\n.*Required\.\n")
-        self.assertRegex(run, r"\n--engine TEXT\n.*One of auto, sweep, grid, kdtree\. Default: auto\.\n")
+        self.assertRegex(run, r"\n--engine TEXT\n.*One of sweep, grid, kdtree\. Default: sweep\.\n")
         self.assertRegex(run, r"\n--threads N\n.*From 1 to 1024\.\n")
         self.assertRegex(run, r"\n--force\n.*Not with --resume\.\n")
         for page in ("clearway", "clearway-run"):

@@ -48,8 +48,6 @@ constexpr Experiment kExperiments[] = {
      "Compares the results of all engines, devices and modes with the sweep's on the CPU, byte by "
      "byte",
      true, true},
-    {"choice", bench_choice,
-     "Whether --engine auto takes the faster engine, and how good its estimates are", true, true},
     {"shards", bench_shards,
      "Work of the largest of 16 shards over the mean, by estimate and measured", true, true},
     {"surfaces", bench_surfaces,
@@ -161,7 +159,7 @@ void add_bounds(CLI::App& command, BenchOptions& options) {
 const CLI::Option* add_scenes(CLI::App& command, BenchOptions& options) {
   return command
       .add_option("--scenes", options.scenes,
-                  "Scenes, for table, share, equality, choice, shards, seen and section "
+                  "Scenes, for table, share, equality, shards, seen and section "
                   "(default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember({"mine", "hall", "plant", "tunnel"}));

@@ -209,17 +209,17 @@ ordered_json describe(const ResultReader& result) {
 }
 
 ordered_json describe(const JournalReader& journal) {
-  const JournalledWork work = journalled_work(journal);
-  ordered_json description{{"kind", "journal"},
-                           {"version", kJournalVersion},
-                           {"records", journal.records()},
-                           {"finished_cells", work.cells},
-                           {"finished_poses", work.poses},
-                           {"answered_cells", ordered_json::object()},
-                           {"torn", journal.torn()}};
+  const std::array cells = answered_cells(journal);
+  ordered_json description{
+      {"kind", "journal"},
+      {"version", kJournalVersion},
+      {"records", journal.records()},
+      {"finished_cells", cells[static_cast<std::size_t>(PointQuestion::kHits)]},
+      {"answered_cells", ordered_json::object()},
+      {"torn", journal.torn()}};
   for (std::size_t i = 0; i < kQuestions; ++i) {
-    if (work.of_questions[i] == 0) continue;
-    description["answered_cells"][name_of(static_cast<PointQuestion>(i))] = work.of_questions[i];
+    if (cells[i] == 0) continue;
+    description["answered_cells"][name_of(static_cast<PointQuestion>(i))] = cells[i];
   }
   if (journal.identity()) {
     for (const auto& [name, value] : *journal.identity()) description[name] = value;

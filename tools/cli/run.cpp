@@ -232,7 +232,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
                        {"classes", report.bytes_read.classes},
                        {"origins", report.bytes_read.origins}};
   out["resumed_cells"] = known(searched, report.resumed_cells);
-  out["resumed_poses"] = known(searched, report.resumed_poses);
   out["pages"] = known(searched, report.pages);
   out["page_bytes"] = known(searched, report.page_bytes);
   out["slots"] = known(searched, report.slots);
@@ -401,7 +400,8 @@ void add_run(CLI::App& program, int& exit_code) {
       "A mesh is searched as its surface, other models as their points. With --between-poses the "
       "way from each pose to the next counts too.\n"
       "--between-poses and the engines kdtree and grid search points alone, and refuse a mesh\n"
-      "unless --model-as points, --model-spacing or --model-vertices asks for points of it.\n"
+      "unless --model-as points, --model-spacing or --model-vertices asks for points of it. These\n"
+      "engines find the points that collide at the poses, and nothing else.\n"
       "The first pose is the first one that touches the point. With --between-poses it is the "
       "pose\n"
       "from which the first way starts that touches the point. A way includes both its ends.\n"

@@ -9,9 +9,9 @@
 namespace clearway {
 
 template <>
-inline constexpr std::array kChoices<Engine>{
-    Choice<Engine>{"auto", Engine::kAuto}, Choice<Engine>{"sweep", Engine::kSweep},
-    Choice<Engine>{"grid", Engine::kGrid}, Choice<Engine>{"kdtree", Engine::kKdtree}};
+inline constexpr std::array kChoices<Engine>{Choice<Engine>{"sweep", Engine::kSweep},
+                                             Choice<Engine>{"grid", Engine::kGrid},
+                                             Choice<Engine>{"kdtree", Engine::kKdtree}};
 
 template <typename Options>
 inline constexpr Field kEngine{
@@ -20,11 +20,11 @@ inline constexpr Field kEngine{
     .option = "--engine",
     .group = OptionGroup::kSpeed,
     .help =
-        "sweep, grid or kdtree; auto takes kdtree for few poses and a small radius, otherwise "
-        "sweep",
+        "sweep; grid and kdtree are those of the paper, which find the points that collide at the "
+        "poses and nothing else",
     .doc =
-        "'auto', 'sweep', 'grid' or 'kdtree'; 'auto' takes 'kdtree' for few\n"
-        "    poses and a small radius, otherwise 'sweep'."};
+        "'sweep', 'grid' or 'kdtree'; the last two are those of the paper, which\n"
+        "    find the points that collide at the poses and nothing else."};
 
 /// How a query is searched, and where.
 inline constexpr std::tuple kEngineFields =

@@ -75,4 +75,15 @@ double displacement_bound(const Box& model, const Pose& a, const Pose& b) {
   return std::sqrt(greatest) * (1 + 8 * kUnitRoundoff) + 2 * std::sqrt(3.0) * rounding * 1.01;
 }
 
+std::vector<PoseBound> pose_bounds(std::span<const Pose> poses, const Box& model) {
+  const Vec3 reach = reach_of(model);
+  std::vector<PoseBound> bounds;
+  bounds.reserve(poses.size());
+  for (const Pose& pose : poses) {
+    bounds.push_back({greatest_stretch_bound(pose),
+                      2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach, pose)});
+  }
+  return bounds;
+}
+
 }  // namespace clearway

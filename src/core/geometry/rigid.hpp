@@ -1,5 +1,8 @@
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "clearway/pose.hpp"
 #include "core/geometry/box.hpp"
 
@@ -35,5 +38,15 @@ double displacement_bound(const Box& model, const Pose& a, const Pose& b);
 /// |m_k| <= reach_k, where reach holds the largest coordinates of the model
 /// (docs/design/numerics.md).
 double transform_rounding(const Vec3& reach, const Pose& pose);
+
+/// Bounds of a pose, for points m and c of a model: |R (m - c)| <= stretch |m - c|; `spread` bounds
+/// the rounding of both transforms, metres.
+struct PoseBound {
+  double stretch;
+  double spread;
+};
+
+/// The bounds of each pose for a model within a box.
+std::vector<PoseBound> pose_bounds(std::span<const Pose> poses, const Box& model);
 
 }  // namespace clearway

@@ -31,8 +31,7 @@ struct GridWorkArrays {
         buckets(run.add<BucketRange>(cells * scene.view().bucket_count)),
         occupancy(run.add<std::uint64_t>(cells * scene.view().word_count)),
         group_occupancy(run.add<std::uint64_t>(cells * scene.view().word_count)),
-        done(run.add<std::uint64_t>(scene.first_pose() ? 0 : cells * scene.view().slots / 64)),
-        latest(run.add<std::uint32_t>(scene.first_pose() ? cells * scene.view().bucket_count : 0)),
+        done(run.add<std::uint64_t>(cells * scene.view().slots / 64)),
         keys(run.add<std::uint32_t>(cells * scene.view().slots)),
         order(run.add<std::uint32_t>(cells * scene.view().slots)) {}
 
@@ -42,14 +41,12 @@ struct GridWorkArrays {
     view.occupancy = occupancy.in(begin).data();
     view.group_occupancy = group_occupancy.in(begin).data();
     view.done = done.in(begin).data();
-    view.latest = latest.in(begin).data();
   }
 
   ArrayPlace<GridPoint> points;
   ArrayPlace<BucketRange> buckets;
   ArrayPlace<std::uint64_t> occupancy, group_occupancy;
   ArrayPlace<std::uint64_t> done;
-  ArrayPlace<std::uint32_t> latest;
   ArrayPlace<std::uint32_t> keys, order;  ///< keys of the slots, and the slots themselves
 };
 

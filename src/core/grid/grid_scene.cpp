@@ -4,8 +4,6 @@
 #include <bit>
 #include <cmath>
 
-#include "clearway/error.hpp"
-#include "core/geometry/floor.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/grid/grid_size.hpp"
 
@@ -15,33 +13,15 @@ namespace {
 /// Bits of each of a cell's two occupancies for each point of the cell.
 constexpr std::uint32_t kOccupancyBits = 16;
 
-void refuse_unanswerable(const Query& query) {
-  if (query.between_poses) {
-    throw UsageError("engine grid searches at poses, not between them", Remedy::kSweepEngine);
-  }
-  if (query.clearance > 0) {
-    throw UsageError("engine grid has no clearances", Remedy::kSweepEngine);
-  }
-}
-
-PoseBound bound_of(const Pose& pose, const Vec3& reach) {
-  return {greatest_stretch_bound(pose),
-          2 * std::sqrt(3.0) * 1.01 * transform_rounding(reach, pose)};
-}
-
 }  // namespace
 
 GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
                      const GridOptions& options)
     : motion_(motion),
       model_(query.model.vertices),
-      first_pose_(query.first_pose),
+      bounds_(pose_bounds(query.poses, model_.box())),
       grid_cell_(options.grid_cell > 0 ? options.grid_cell
                                        : cheapest_grid_cell(query.radius, surface_density(cloud))) {
-  refuse_unanswerable(query);
-  const Vec3 reach = reach_of(model_.box());
-  bounds_.reserve(poses().size());
-  for (const Pose& pose : poses()) bounds_.push_back(bound_of(pose, reach));
   add_nodes();
   for_each_array([&](auto member, auto values) { view_.*member = values.data(); });
   view_.quantisation = cloud.quantisation();
@@ -52,7 +32,6 @@ GridScene::GridScene(const Query& query, const MotionTree& motion, const PackedC
   view_.bucket_count = std::max(64U, std::bit_ceil(cloud.cell_entries()));
   view_.word_count = std::bit_ceil(std::max(64U, cloud.cell_entries() * kOccupancyBits / 64));
   view_.radius = view_.search_radius = query.radius;
-  view_.floor = query.floor.value_or(kNoFloor);
   view_.float_alone = options.precision == GridPrecision::kFloat;
   if (view_.float_alone) view_.search_radius = float_search_radius(cloud);
   choose_group_radius();

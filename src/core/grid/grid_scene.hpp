@@ -24,8 +24,7 @@ struct GridOptions {
 class GridScene {
  public:
   /// query: its model and poses must outlive this object, as must `motion`. Of the cloud no points
-  /// are read. Supports sets and first poses; throws UsageError for a query between poses or with a
-  /// clearance.
+  /// are read.
   GridScene(const Query& query, const MotionTree& motion, const PackedCloud& cloud,
             const GridOptions& options = {});
 
@@ -34,7 +33,6 @@ class GridScene {
   std::span<const PoseBound> bounds() const { return bounds_; }
   std::span<const GridNode> nodes() const { return nodes_; }
   std::span<const std::uint32_t> runs() const { return runs_; }
-  bool first_pose() const { return first_pose_; }
   double grid_cell() const { return grid_cell_; }  ///< side of the grid cells, metres
   double group_radius() const { return group_radius_; }
 
@@ -70,7 +68,6 @@ class GridScene {
   std::vector<PoseBound> bounds_;
   std::vector<GridNode> nodes_;
   std::vector<std::uint32_t> runs_;
-  bool first_pose_;
   double grid_cell_;
   double group_radius_ = 0;
   GridSceneView view_{};

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/geometry/floor.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 #include "core/grid/float_predicate.hpp"
@@ -58,19 +57,17 @@ CLEARWAY_HD inline bool group_is_open(const GridSceneView& scene, const GridPage
                    grid.per_group_bit, c.x, c.y, c.z);
 }
 
-/// Whether point `index` still matters at the pose.
+/// Whether point `index` has not been hit yet.
 CLEARWAY_HD inline bool is_wanted(const GridSceneView& scene, const GridPageView& page,
-                                  std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
+                                  std::uint32_t cell, std::uint32_t index) {
   const std::uint64_t slot = std::uint64_t{cell} * scene.slots + index;
-  if (page.first_poses != nullptr) return pose < page.first_poses[slot];
   return (page.hits[slot / kBlockPoints] >> (slot % kBlockPoints) & 1) == 0;
 }
 
 CLEARWAY_HD inline void mark_hit(const GridSceneView& scene, const GridPageView& page,
-                                 std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
+                                 std::uint32_t cell, std::uint32_t index) {
   const std::uint64_t slot = std::uint64_t{cell} * scene.slots + index;
   or_bits(page.hits[slot / kBlockPoints], std::uint64_t{1} << (slot % kBlockPoints));
-  if (page.first_poses != nullptr) lower_to(&page.first_poses[slot], pose);
 }
 
 /// The decision about a pair: by the predicate, or by floats alone. m: the moved model point.
@@ -80,13 +77,6 @@ CLEARWAY_HD inline bool is_hit(const GridSceneView& scene, const GridPageView& p
   const Vec3 e = position_of(scene, page, cell, index);
   if (!scene.float_alone) return collides(e, m, scene.radius);
   return collides_in_float(e, scene.poses[pose], scene.points[model_point], scene.radius);
-}
-
-/// Whether the pair of a point and a pose counts.
-CLEARWAY_HD inline bool counts(const GridSceneView& scene, const GridPageView& page,
-                               std::uint32_t cell, std::uint32_t index, std::uint32_t pose) {
-  return scene.floor == kNoFloor ||
-         is_above_floor(scene.poses[pose], position_of(scene, page, cell, index), scene.floor);
 }
 
 /// A model point at a pose, for the predicate and in the cell's floats.
@@ -107,14 +97,13 @@ CLEARWAY_HD inline void test_pair(const GridSceneView& scene, const GridPageView
   const float dx = p.x - moved.x.x, dy = p.y - moved.x.y, dz = p.z - moved.x.z;
   const float squared = dx * dx + dy * dy + dz * dz;
   if (squared > grid.outer_squared) return;
-  if (!is_wanted(scene, page, cell, p.index, moved.pose)) return;
+  if (!is_wanted(scene, page, cell, p.index)) return;
   if (!(squared < grid.inner_squared)) {
     ++statistics.exact_tests;
     if (!is_hit(scene, page, cell, p.index, moved.pose, moved.model_point, moved.m)) return;
   }
-  if (!counts(scene, page, cell, p.index, moved.pose)) return;
-  mark_hit(scene, page, cell, p.index, moved.pose);
-  if (page.done != nullptr) or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
+  mark_hit(scene, page, cell, p.index);
+  or_bits(page.done[at / 64], std::uint64_t{1} << (at % 64));
 }
 
 /// Tests the points of a range that are not hit yet.
@@ -130,23 +119,6 @@ CLEARWAY_HD inline void test_open(const GridSceneView& scene, const GridPageView
     }
     first = next;
   }
-}
-
-/// Tests all points of a bucket, unless each has been hit at an earlier pose. Their latest first
-/// pose only ever falls, so a value that another lane stores late is still a bound.
-CLEARWAY_HD inline void test_earlier(const GridSceneView& scene, const GridPageView& page,
-                                     std::uint32_t cell, std::uint64_t bucket,
-                                     const BucketRange& range, const MovedPoint& moved,
-                                     GridStatistics& statistics) {
-  if (moved.pose >= page.latest[bucket]) return;
-  std::uint32_t latest = 0;
-  for (std::uint32_t at = range.begin; at < range.end; ++at) {
-    test_pair(scene, page, cell, at, moved, statistics);
-    const std::uint64_t slot = std::uint64_t{cell} * scene.slots + page.points[at].index;
-    const std::uint32_t first = page.first_poses[slot];
-    if (first > latest) latest = first;
-  }
-  if (latest != HitSet::kNever) page.latest[bucket] = latest;
 }
 
 /// Tests the points of all grid cells within reach of the moved model point.
@@ -171,11 +143,7 @@ CLEARWAY_HD inline void search_buckets(const GridSceneView& scene, const GridPag
         const BucketRange range = page.buckets[bucket];
         ++statistics.bucket_tests;
         if (range.begin == range.end) continue;
-        if (page.done != nullptr) {
-          test_open(scene, page, cell, range, moved, statistics);
-        } else {
-          test_earlier(scene, page, cell, bucket, range, moved, statistics);
-        }
+        test_open(scene, page, cell, range, moved, statistics);
       }
     }
   }
@@ -190,12 +158,9 @@ CLEARWAY_HD inline void search_point(const GridSceneView& scene, const GridPageV
   ++statistics.points_moved;
   if (grid.exact_only) {
     for (std::uint32_t i = 0; i < grid.count; ++i) {
-      if (!page.page.is_searched(cell, i) || !is_wanted(scene, page, cell, i, pose)) continue;
+      if (!page.page.is_searched(cell, i) || !is_wanted(scene, page, cell, i)) continue;
       ++statistics.exact_tests;
-      if (is_hit(scene, page, cell, i, pose, model_point, m) &&
-          counts(scene, page, cell, i, pose)) {
-        mark_hit(scene, page, cell, i, pose);
-      }
+      if (is_hit(scene, page, cell, i, pose, model_point, m)) mark_hit(scene, page, cell, i);
     }
     return;
   }

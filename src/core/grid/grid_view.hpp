@@ -5,6 +5,7 @@
 #include "clearway/pose.hpp"
 #include "core/geometry/box.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "core/geometry/rigid.hpp"
 #include "core/grid/model_groups.hpp"
 #include "core/page/page.hpp"
 
@@ -17,13 +18,6 @@ inline constexpr std::uint32_t kRunPoses = 16;
 
 /// Number of parts that one task handles.
 inline constexpr std::uint32_t kTaskParts = 128;
-
-/// Bounds of a pose: |R (m - c)| <= stretch |m - c|; `spread` bounds the rounding of both
-/// transforms, metres.
-struct PoseBound {
-  double stretch;
-  double spread;
-};
 
 /// A node of the motion tree. A node of at most kRunPoses poses is searched as a whole, a larger
 /// one as the runs first_run .. first_run + runs - 1.
@@ -50,7 +44,6 @@ struct GridSceneView {
   std::uint32_t word_count;    ///< words of an occupancy, a power of two
   double radius;
   double search_radius;  ///< pairs farther apart are no hit; exceeds the radius if floats decide
-  double floor;          ///< in the model's frame, metres; kNoFloor if the query has none
   bool float_alone;
 };
 
@@ -114,12 +107,8 @@ struct GridPageView {
   BucketRange* buckets;            ///< bucket_count for each cell, initially zero
   std::uint64_t* occupancy;        ///< word_count for each cell, initially zero
   std::uint64_t* group_occupancy;  ///< word_count for each cell, initially zero
-  /// One bit for each point in grid order, set once it is hit; null with first poses
-  std::uint64_t* done;
-  /// For each bucket, a bound on its points' first poses; null without first poses
-  std::uint32_t* latest;
-  std::uint64_t* hits;         ///< blocks_per_cell for each cell, initially zero
-  std::uint32_t* first_poses;  ///< slots for each cell, initially kNever; null if not asked for
+  std::uint64_t* done;             ///< one bit for each point in grid order, set once it is hit
+  std::uint64_t* hits;             ///< blocks_per_cell for each cell, initially zero
 };
 
 }  // namespace clearway

@@ -18,6 +18,25 @@ Body backwards(const Body& body, std::uint32_t last, bool between_poses) {
 
 }  // namespace
 
+void ProfileSet::offer(std::uint32_t pose, double squared, std::uint64_t entry) {
+  const std::lock_guard lock(*mutex_);
+  ProfilePoint& known = points_[pose];
+  ProfilePoint offered{.squared = squared, .entry = entry};
+  if (known.squared < squared) return;
+  if (known.squared == squared && known.found()) {
+    known.source = source_of(known);
+    offered.source = source_of(offered);
+    if (known.source <= offered.source) return;
+  }
+  known = offered;
+}
+
+std::uint64_t ProfileSet::source_of(const ProfilePoint& point) const {
+  if (point.source != ProfilePoint{}.source) return point.source;
+  return cloud_->source_of(static_cast<std::uint32_t>(point.entry / cloud_->cell_entries()),
+                           static_cast<std::uint32_t>(point.entry % cloud_->cell_entries()));
+}
+
 Query backwards(const Query& query) {
   Query out = query;
   out.first_pose = true;

@@ -1,59 +1,18 @@
 #pragma once
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <new>
-#include <type_traits>
-#include <utility>
 #include <vector>
 
 #include "clearway/query.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/query/body_numbers.hpp"
 
 namespace clearway {
-
-/// An array of zeros. The system provides its memory when it is first touched, so that an array of
-/// which little is used costs little, and the threads that use it share the work.
-template <typename Number>
-class ZeroedArray {
-  static_assert(std::is_arithmetic_v<Number>);
-
- public:
-  ZeroedArray() = default;
-  explicit ZeroedArray(std::uint64_t size) : numbers_(map(size), {size}), size_(size) {}
-
-  Number& operator[](std::size_t i) { return numbers_.get()[i]; }
-  const Number& operator[](std::size_t i) const { return numbers_.get()[i]; }
-  std::uint64_t size() const { return size_; }
-  std::uint64_t allocated_bytes() const { return size_ * sizeof(Number); }
-
- private:
-  struct Unmap {
-    std::uint64_t size = 0;
-    void operator()(Number* numbers) const { ::munmap(numbers, size * sizeof(Number)); }
-  };
-
-  /// Pages straight from the system. std::calloc would clear memory that was used before.
-  static Number* map(std::uint64_t size) {
-    if (size == 0) return nullptr;
-    void* const pages = ::mmap(nullptr, size * sizeof(Number), PROT_READ | PROT_WRITE,
-                               MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-    if (pages == MAP_FAILED) throw std::bad_alloc();
-    return static_cast<Number*>(pages);
-  }
-
-  std::unique_ptr<Number, Unmap> numbers_;
-  std::uint64_t size_ = 0;
-};
 
 /// The distance that belongs to a squared distance; both are below 0 inside solids
 /// (docs/design/solids.md).
@@ -61,83 +20,8 @@ inline double signed_root(double squared) {
   return squared < 0 ? -std::sqrt(-squared) : std::sqrt(squared);
 }
 
-/// The colliding points of a PackedCloud by entry: one bit each, and the first pose if asked for.
-/// Marking is thread safe; reading is for after the threads have joined.
-class HitSet {
- public:
-  static constexpr std::uint32_t kNever = std::numeric_limits<std::uint32_t>::max();
-
-  HitSet(std::uint64_t entries, bool first_pose)
-      : words_((entries + 63) / 64),
-        earliness_(first_pose ? entries : 0),
-        has_first_pose_(first_pose) {}
-
-  void mark(std::uint64_t entry) { mark_word(entry / 64, std::uint64_t{1} << (entry % 64)); }
-
-  /// Marks the entries 64 * word + i of all set bits i.
-  void mark_word(std::uint64_t word, std::uint64_t bits) {
-    std::atomic_ref target(words_[word]);
-    if ((target.load(std::memory_order_relaxed) & bits) != bits) {
-      target.fetch_or(bits, std::memory_order_relaxed);
-    }
-  }
-
-  /// Marks the entry and lowers its first pose to `pose`. Only with first poses.
-  void mark(std::uint64_t entry, std::uint32_t pose) {
-    mark(entry);
-    const std::uint32_t earliness = kNever - pose;
-    std::atomic_ref target(earliness_[entry]);
-    std::uint32_t seen = target.load(std::memory_order_relaxed);
-    while (earliness > seen &&
-           !target.compare_exchange_weak(seen, earliness, std::memory_order_relaxed)) {
-    }
-  }
-
-  /// Removes the marks of `count` words of 64 entries each, but not their first poses. Must not be
-  /// called while others mark.
-  void clear_words(std::uint64_t first, std::uint64_t count) {
-    std::fill_n(&words_[first], count, 0);
-  }
-
-  /// Removes the marks of the entries 64 * word + i of all set bits i, and their first poses. Must
-  /// not be called while others mark these.
-  void forget(std::uint64_t word, std::uint64_t bits) {
-    words_[word] &= ~bits;
-    if (!has_first_pose_) return;
-    for (unsigned i = 0; i < 64; ++i) {
-      if ((bits >> i & 1) != 0) earliness_[64 * word + i] = 0;
-    }
-  }
-
-  bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }
-  std::uint64_t word(std::uint64_t index) const { return words_[index]; }
-  std::uint64_t word_now(std::uint64_t index) {
-    return std::atomic_ref(words_[index]).load(std::memory_order_relaxed);
-  }
-
-  bool has_first_pose() const { return has_first_pose_; }
-  std::uint32_t first_pose(std::uint64_t entry) const { return kNever - earliness_[entry]; }
-  std::uint32_t first_pose_now(std::uint64_t entry) {
-    return kNever - std::atomic_ref(earliness_[entry]).load(std::memory_order_relaxed);
-  }
-
-  std::uint64_t count() const {
-    std::uint64_t total = 0;
-    for (std::uint64_t i = 0; i < words_.size(); ++i) {
-      total += static_cast<std::uint64_t>(std::popcount(words_[i]));
-    }
-    return total;
-  }
-
-  std::uint64_t allocated_bytes() const {
-    return words_.allocated_bytes() + earliness_.allocated_bytes();
-  }
-
- private:
-  ZeroedArray<std::uint64_t> words_;
-  ZeroedArray<std::uint32_t> earliness_;  ///< kNever - first pose, so that zeros mean never
-  bool has_first_pose_;
-};
+/// In the place of a pose's number: none.
+inline constexpr std::uint32_t kNoPose = std::numeric_limits<std::uint32_t>::max();
 
 /// The least computed d2 between an environment point and the model over all poses, square metres,
 /// and the lowest pose that has it. The distance is its root. For a point inside solids it is below
@@ -175,23 +59,18 @@ struct ProfilePoint {
 };
 
 /// The nearest point of every pose, 24 bytes each; none if no point is below the distance asked
-/// for. Offers are thread safe and may come in any order.
+/// for. Offers are thread safe and may come in any order. Source indices are read only where two
+/// points have the same distance, and of the points that are handed out.
 class ProfileSet {
  public:
   ProfileSet() = default;
-  explicit ProfileSet(std::uint64_t poses)
-      : points_(poses), mutex_(std::make_unique<std::mutex>()) {}
+  /// The cloud must outlive the set.
+  ProfileSet(const PackedCloud& cloud, std::uint64_t poses)
+      : cloud_(&cloud), points_(poses), mutex_(std::make_unique<std::mutex>()) {}
 
   std::uint64_t poses() const { return points_.size(); }
 
-  void offer(std::uint32_t pose, const ProfilePoint& point) {
-    const std::lock_guard lock(*mutex_);
-    ProfilePoint& known = points_[pose];
-    if (point.squared < known.squared ||
-        (point.squared == known.squared && point.source < known.source)) {
-      known = point;
-    }
-  }
+  void offer(std::uint32_t pose, double squared, std::uint64_t entry);
 
   /// Whether this entry is the best one so far.
   bool holds(std::uint32_t pose, std::uint64_t entry) const {
@@ -200,7 +79,11 @@ class ProfileSet {
   }
 
   /// The nearest point of a pose. Must not be called while others offer.
-  const ProfilePoint& at(std::uint64_t pose) const { return points_[pose]; }
+  ProfilePoint at(std::uint64_t pose) const {
+    ProfilePoint point = points_[pose];
+    if (point.found()) point.source = source_of(point);
+    return point;
+  }
 
   std::uint64_t count() const {
     std::uint64_t total = 0;
@@ -208,10 +91,11 @@ class ProfileSet {
     return total;
   }
 
-  std::uint64_t allocated_bytes() const { return points_.capacity() * sizeof(ProfilePoint); }
-
  private:
-  std::vector<ProfilePoint> points_;
+  std::uint64_t source_of(const ProfilePoint& point) const;
+
+  const PackedCloud* cloud_ = nullptr;
+  std::vector<ProfilePoint> points_;  ///< with their sources as far as these are known
   std::unique_ptr<std::mutex> mutex_;
 };
 

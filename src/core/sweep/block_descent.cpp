@@ -24,7 +24,7 @@ void BlockDescentOf<Element>::begin(std::uint64_t which, std::span<const std::ui
   finished_ = ~which;
   hits_ = 0;
   first_pose_ = first_pose;
-  std::ranges::fill(best_, HitSet::kNever);
+  std::ranges::fill(best_, kNoPose);
   std::ranges::fill(tests_, 0);
   nodes_ = nodes;
   runs_.clear();
@@ -69,7 +69,7 @@ std::uint64_t BlockDescentOf<Element>::find_first_poses(std::uint64_t searched,
   }
   for_each_bit(searched, [&](std::uint32_t i) {
     first_poses[i] = best_[i];
-    if (best_[i] != HitSet::kNever) hits_ |= bit(i);
+    if (best_[i] != kNoPose) hits_ |= bit(i);
   });
   return hits_;
 }

@@ -28,7 +28,7 @@ class BlockDescentOf {
                         SweepStatistics& statistics);
 
   /// Finds the first pose (clearway/query.hpp) of each point of `searched`, as bits, or
-  /// HitSet::kNever. nodes: what SweepFilterOf::narrow() left of all nodes for the block, in the
+  /// kNoPose. nodes: what SweepFilterOf::narrow() left of all nodes for the block, in the
   /// order of their poses. first_poses: an entry for each point of the block; others stay as they
   /// are. Returns the points that have a first pose, as bits.
   std::uint64_t find_first_poses(std::uint64_t searched, std::span<const std::uint32_t> nodes,

@@ -250,7 +250,7 @@ bool SweepFilterOf<Element>::touches_runs(const Vec3& e, std::span<const std::ui
   };
   return std::ranges::any_of(nodes, [&](std::uint32_t node) {
     double squared_lower;
-    std::uint32_t end = HitSet::kNever;
+    std::uint32_t end = kNoPose;
     const Step step = search_run(visit(node, squared_lower), e, node, true, end, statistics);
     return step == Step::kEnd || (step == Step::kHalves && descend_nearer_first(node, visit));
   });
@@ -260,7 +260,7 @@ template <typename Element>
 std::uint32_t SweepFilterOf<Element>::first_pose_of_runs(const Vec3& e,
                                                          std::span<const std::uint32_t> nodes,
                                                          SweepStatistics& statistics) const {
-  std::uint32_t best = HitSet::kNever;
+  std::uint32_t best = kNoPose;
   const auto visit = [&](std::uint32_t node) { return find_first_pose(e, node, best, statistics); };
   std::ranges::any_of(nodes, [&](std::uint32_t node) {
     const Step step = search_run(visit(node), e, node, false, best, statistics);

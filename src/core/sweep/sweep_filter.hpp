@@ -81,7 +81,7 @@ class SweepFilterOf final : public PoseReach {
   /// Whether the model touches e at a pose of nodes that join_runs() joined.
   bool touches_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                     SweepStatistics& statistics) const;
-  /// The first pose of e, or HitSet::kNever.
+  /// The first pose of e, or kNoPose.
   std::uint32_t first_pose_of_runs(const Vec3& e, std::span<const std::uint32_t> nodes,
                                    SweepStatistics& statistics) const;
 

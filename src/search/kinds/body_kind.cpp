@@ -175,7 +175,7 @@ PageResult BodyEngine::finish(std::uint32_t slot) {
   std::vector<PageResult> found(bodies_.size());
   for_all([&](std::size_t body) { found[body] = bodies_[body].engine->finish(slot); });
   std::ranges::fill(answers_.hits(slot), 0);
-  std::ranges::fill(answers_.first_poses(slot), HitSet::kNever);
+  std::ranges::fill(answers_.first_poses(slot), kNoPose);
   std::ranges::fill(answers_.clearances(slot), Clearance{});
   make_room(slot, found);
   PageResult result = answers_.result(slot, cells_[slot]);
@@ -209,7 +209,7 @@ void BodyEngine::merge(std::uint32_t slot, std::size_t body, const PageResult& f
   const auto first_poses = answers_.first_poses(slot);
   for (std::size_t i = 0; i < found.first_poses.size(); ++i) {
     const std::uint32_t pose = found.first_poses[i];
-    if (pose != HitSet::kNever) first_poses[i] = std::min(first_poses[i], number_of(pose));
+    if (pose != kNoPose) first_poses[i] = std::min(first_poses[i], number_of(pose));
   }
   const auto clearances = answers_.clearances(slot);
   for (std::size_t i = 0; i < found.clearances.size(); ++i) {

@@ -214,7 +214,7 @@ class CudaGridKind final : public GridKind {
 std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query& query,
                                           const SearchOptions& options, OpenGpus open,
                                           KeptOnGpus* kept, const EngineSettings& settings) {
-  if (chosen_engine(options) == Engine::kGrid) {
+  if (options.engine == Engine::kGrid) {
     return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open), settings.grid);
   }
   if (query.model.is_solid()) {

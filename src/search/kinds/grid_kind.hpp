@@ -3,8 +3,8 @@
 #include <optional>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "core/grid/grid_reach.hpp"
 #include "core/grid/grid_scene.hpp"
+#include "core/page/model_reach.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
@@ -33,7 +33,7 @@ class GridKind : public PageEngineKind {
 
  private:
   GridOptions scene_options_;
-  std::optional<GridReach> reach_;
+  std::optional<ModelReach> reach_;
 };
 
 class CpuGridKind final : public GridKind {

@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "core/grid/float_predicate.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
@@ -45,7 +45,7 @@ Counts check_float(const Vec3& origin, double radius) {
     }
     wrong += hits.contains(slot) != expected;
     counts.hits += expected;
-    counts.differing += expected != (exact[cloud.source(slot)] != HitSet::kNever);
+    counts.differing += expected != (exact[cloud.source(slot)] != kNoPose);
   }
   check_equal(wrong, 0);
   return counts;

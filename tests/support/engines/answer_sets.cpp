@@ -5,7 +5,7 @@ namespace clearway {
 SearchResult empty_result(const PackedCloud& cloud, const Query& query) {
   return {HitSet(cloud.entry_count(), query.first_pose),
           ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
-          query.profile > 0 ? ProfileSet(query.poses.size()) : ProfileSet()};
+          query.profile > 0 ? ProfileSet(cloud, query.poses.size()) : ProfileSet()};
 }
 
 void add_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, const PageResult& page,
@@ -18,7 +18,7 @@ void add_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, cons
     }
     const auto poses = part_of_cell(page.first_poses, i, cloud.cell_entries());
     for (std::size_t entry = 0; entry < poses.size(); ++entry) {
-      if (poses[entry] != HitSet::kNever) all.hits.mark(first + entry, poses[entry]);
+      if (poses[entry] != kNoPose) all.hits.mark(first + entry, poses[entry]);
     }
     const auto clearances = part_of_cell(page.clearances, i, cloud.cell_entries());
     for (std::size_t entry = 0; entry < clearances.size(); ++entry) {

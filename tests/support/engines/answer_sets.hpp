@@ -2,7 +2,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <numeric>
 #include <span>
+#include <vector>
 
 #include "core/query/search_result.hpp"
 #include "stream/answer_rows.hpp"
@@ -10,41 +12,48 @@
 
 namespace clearway {
 
-/// Clearances of a PackedCloud by entry, 12 bytes each; none if it is not below the distance asked
-/// for. Different entries may be set at the same time.
-class ClearanceSet {
+/// The colliding points of a PackedCloud by entry, and their first poses if asked for. Entries of
+/// different blocks may be marked at the same time.
+class HitSet {
  public:
-  ClearanceSet() = default;
-  explicit ClearanceSet(std::uint64_t entries) : squared_(entries), poses_(entries) {}
+  HitSet(std::uint64_t entries, bool first_pose)
+      : words_((entries + 63) / 64), poses_(first_pose ? entries : 0, kNoPose) {}
 
-  void set(std::uint64_t entry, const Clearance& clearance) {
-    squared_[entry] = std::bit_cast<std::uint64_t>(clearance.squared) ^ kNone;
-    poses_[entry] = ~clearance.pose;
+  void mark(std::uint64_t entry) { mark_word(entry / 64, std::uint64_t{1} << (entry % 64)); }
+  void mark(std::uint64_t entry, std::uint32_t pose) {
+    mark(entry);
+    poses_[entry] = pose;
   }
+  /// Marks the entries 64 * word + i of all set bits i.
+  void mark_word(std::uint64_t word, std::uint64_t bits) { words_[word] |= bits; }
 
-  Clearance at(std::uint64_t entry) const {
-    return {std::bit_cast<double>(squared_[entry] ^ kNone), ~poses_[entry]};
-  }
-
-  /// The entries 64 * index + i that have a clearance, as bits i.
-  std::uint64_t word(std::uint64_t index) const {
-    std::uint64_t bits = 0;
-    for (unsigned i = 0; i < 64; ++i) {
-      bits |= std::uint64_t{squared_[64 * index + i] != 0} << i;
-    }
-    return bits;
-  }
-
-  std::uint64_t allocated_bytes() const {
-    return squared_.allocated_bytes() + poses_.allocated_bytes();
+  bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }
+  std::uint64_t word(std::uint64_t index) const { return words_[index]; }
+  std::uint32_t first_pose(std::uint64_t entry) const { return poses_[entry]; }
+  std::uint64_t count() const {
+    return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0},
+                           [](std::uint64_t sum, std::uint64_t word) {
+                             return sum + static_cast<std::uint64_t>(std::popcount(word));
+                           });
   }
 
  private:
-  /// Values are stored as differences from the one that means none, so that zeros mean none.
-  static constexpr std::uint64_t kNone = std::bit_cast<std::uint64_t>(Clearance{}.squared);
+  std::vector<std::uint64_t> words_;
+  std::vector<std::uint32_t> poses_;
+};
 
-  ZeroedArray<std::uint64_t> squared_;
-  ZeroedArray<std::uint32_t> poses_;
+/// Clearances of a PackedCloud by entry; none if it is not below the distance asked for. Different
+/// entries may be set at the same time.
+class ClearanceSet {
+ public:
+  ClearanceSet() = default;
+  explicit ClearanceSet(std::uint64_t entries) : clearances_(entries) {}
+
+  void set(std::uint64_t entry, const Clearance& clearance) { clearances_[entry] = clearance; }
+  Clearance at(std::uint64_t entry) const { return clearances_[entry]; }
+
+ private:
+  std::vector<Clearance> clearances_;
 };
 
 /// The answer of an engine for every entry of a small cloud.

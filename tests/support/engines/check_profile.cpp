@@ -23,7 +23,7 @@ std::uint64_t check_profile(const Engine& engine, const MemoryCloud& cloud,
   REQUIRE(answer.profile.poses() == (query.model.empty() ? 0 : expected.size()));
   std::uint64_t wrong = 0, found = 0;
   for (std::size_t pose = 0; pose < answer.profile.poses(); ++pose) {
-    const ProfilePoint& point = answer.profile.at(pose);
+    const ProfilePoint point = answer.profile.at(pose);
     wrong += point.squared != expected[pose].squared || point.source != expected[pose].source;
     if (!point.found()) continue;
     ++found;
@@ -51,7 +51,7 @@ std::uint64_t check_profile(const MemoryCloud& cloud, std::vector<NearestPoint> 
   }
   std::uint64_t found = 0;
   for (const Engine& engine : engines()) {
-    if (engine.clearances) found = check_profile(engine, cloud, nearest, query);
+    if (engine.finds_all) found = check_profile(engine, cloud, nearest, query);
   }
   return found;
 }

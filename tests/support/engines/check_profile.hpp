@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "clearway/query.hpp"
-#include "cpu/brute_force.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {

@@ -4,11 +4,10 @@
 #include <utility>
 
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
-#include "cpu/kdtree_engine.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/check_profile.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/engines/host_sweep.hpp"
@@ -18,8 +17,7 @@ using namespace test;
 namespace {
 
 SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
-  NoProgress progress;
-  return {run_kdtree(cloud, query, {threads}, progress), ClearanceSet()};
+  return {run_kdtree(cloud, query, {.threads = threads}), ClearanceSet()};
 }
 
 SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance) {
@@ -51,10 +49,10 @@ SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
 }
 
 std::vector<Engine> under_test{
-    {"kdtree", kdtree, true, false, false},
-    {"sweep", run_exactly<sweep>, true, true, true, sweep},
-    {"sweep as on CUDA", run_exactly<sweep_as_on_cuda>, true, true, true, sweep_as_on_cuda},
-    {"grid", grid, false, false, false}};
+    {"kdtree", kdtree, false},
+    {"sweep", run_exactly<sweep>, true, sweep},
+    {"sweep as on CUDA", run_exactly<sweep_as_on_cuda>, true, sweep_as_on_cuda},
+    {"grid", grid, false}};
 
 /// The number of threads of the next run: three for every fifth run, otherwise one, because in
 /// scenes this small threads mostly wait for each other. The runs of a scene are no multiple of
@@ -80,11 +78,12 @@ struct Expected {
 std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
                             Query query) {
   std::uint64_t colliding = 0;
-  for (const std::uint32_t pose : expected) colliding += pose != HitSet::kNever;
+  for (const std::uint32_t pose : expected) colliding += pose != kNoPose;
   for (const Engine& engine : engines()) {
-    if (query.between_poses && !engine.between_poses) continue;
-    if (query.model.is_surface() && !engine.surfaces) continue;
+    const bool needs_all = query.between_poses || query.floor || query.model.is_surface();
+    if (needs_all && !engine.finds_all) continue;
     for (const bool first_pose : {false, true}) {
+      if (first_pose && !engine.finds_all) continue;
       query.first_pose = first_pose;
       const int threads = next_threads();
       const HitSet hits = engine.run(cloud, query, threads).hits;
@@ -97,7 +96,7 @@ std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uin
           continue;
         }
         const std::uint32_t pose = expected[cloud.source(slot)];
-        wrong += hits.contains(slot) != (pose != HitSet::kNever);
+        wrong += hits.contains(slot) != (pose != kNoPose);
         if (first_pose) wrong += hits.first_pose(slot) != pose;
       }
       check_equal(wrong, 0);
@@ -120,7 +119,7 @@ std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, c
   std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
   for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
     Clearance expected;
-    std::uint32_t pose = HitSet::kNever;
+    std::uint32_t pose = kNoPose;
     if (cloud.is_used(slot)) {
       const Clearance& oracle = least[cloud.source(slot)];
       if (oracle.squared < limit) expected = oracle;
@@ -128,7 +127,7 @@ std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, c
     }
     found += expected.found();
     wrong += answer.clearances.at(slot) != expected;
-    wrong_hits += answer.hits.contains(slot) != (pose != HitSet::kNever);
+    wrong_hits += answer.hits.contains(slot) != (pose != kNoPose);
     if (query.first_pose) wrong_hits += answer.hits.first_pose(slot) != pose;
   }
   check_equal(wrong, 0);
@@ -140,7 +139,7 @@ std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
                                const std::vector<std::uint32_t>& first_poses, const Query& query) {
   std::uint64_t found = 0;
   for (const Engine& engine : engines()) {
-    if (engine.clearances) found = check_clearances(engine, cloud, least, first_poses, query);
+    if (engine.finds_all) found = check_clearances(engine, cloud, least, first_poses, query);
   }
   return found;
 }
@@ -232,8 +231,8 @@ std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std
   Oracle least = brute_force_clearances(environment, query);
   for (std::size_t i = 0; i < ignored.size(); ++i) {
     if (!ignored[i]) continue;
-    expected.at_poses[i] = HitSet::kNever;
-    if (!query.model.is_surface()) expected.between_poses[i] = HitSet::kNever;
+    expected.at_poses[i] = kNoPose;
+    if (!query.model.is_surface()) expected.between_poses[i] = kNoPose;
     least[i] = {};
   }
   const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);

@@ -19,9 +19,8 @@ namespace clearway {
 struct Engine {
   std::string name;
   SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
-  bool between_poses;  ///< whether it answers queries between poses
-  bool clearances;     ///< whether it gives clearances and profiles
-  bool surfaces;       ///< whether it searches models of triangles
+  /// Whether it finds more than which points collide with a model of points at its poses
+  bool finds_all;
   /// Searches within a tolerance; null where an engine cannot
   SearchResult (*run_within)(const PackedCloud& cloud, const Query& query, int threads,
                              double tolerance) = nullptr;
@@ -59,9 +58,9 @@ SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads
 /// Makes engines() return these from now on.
 void test_only(std::vector<Engine> engines);
 
-/// Runs every engine on the points, packed in several ways, as a set and with first poses, at poses
-/// and, with a model of points, between them, and checks the answers against brute force. Where an
-/// engine has clearances, those below and above the radius are checked in the same way. Returns the
+/// Runs every engine on the points, packed in several ways, and checks the answers against brute
+/// force: the set at poses, and where an engine finds all, with first poses, between poses for a
+/// model of points, and clearances below and above the radius. Returns the
 /// number of points that collide at a pose.
 std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
                             const Query& query);
@@ -73,7 +72,7 @@ std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std
                             const Quantisation& quantisation, const Query& query);
 
 /// Checks every engine between poses alone, with the points packed in one way. Returns every
-/// point's first pose, or HitSet::kNever.
+/// point's first pose, or kNoPose.
 std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
                                                const Quantisation& quantisation, Query query);
 

@@ -2,6 +2,7 @@
 
 #include "clearway/error.hpp"
 #include "cpu/grid_cpu_engine.hpp"
+#include "cpu/kdtree_engine.hpp"
 #include "stream/run_pages.hpp"
 #include "support/engines/answer_sets.hpp"
 
@@ -34,6 +35,27 @@ std::vector<PlannedCell> plan_everything(const PackedCloud& cloud, const MotionT
   return cells;
 }
 
+using RunIn = std::function<HitSet(PageEngine& engine)>;
+
+/// Plans and stages every cell, and returns what `make` finds with an engine of its own.
+HitSet run_staged(const PackedCloud& cloud, const Query& query, const GridRun& run,
+                  const std::function<HitSet(const MotionTree& motion, std::uint64_t page_bytes,
+                                             const RunIn& run_in)>& make) {
+  if (query.model.empty()) return HitSet(cloud.entry_count(), false);
+  const MotionTree motion(query.poses, ModelGroups(query.model.vertices).box());
+  const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
+  const bool masked = query.ignores_points();
+  const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells, masked);
+  return make(motion, page_bytes, [&](PageEngine& engine) {
+    NoProgress progress;
+    StageTimes times;
+    const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page, masked);
+    PageEngine* const engines[] = {&engine};
+    return clearway::run_pages(cloud, cells, pages, engines, query, run.threads, progress, times)
+        .hits;
+  });
+}
+
 }  // namespace
 
 HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
@@ -49,20 +71,20 @@ HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run
 
 HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
                 const RunPages& run_pages) {
-  if (query.model.empty()) return HitSet(cloud.entry_count(), query.first_pose);
-  const MotionTree motion(query.poses, ModelGroups(query.model.vertices).box());
-  const std::vector<PlannedCell> cells = plan_everything(cloud, motion);
-  const bool masked = query.ignores_points();
-  const std::uint64_t page_bytes = run.cells_a_page * smallest_page_bytes(cloud, cells, masked);
-  const GridScene scene(query, motion, cloud, run.options);
-  return run_pages(scene, page_bytes, [&](PageEngine& engine) {
-    NoProgress progress;
-    StageTimes times;
-    const auto pages = paginate(cloud, cells, page_bytes, run.cells_a_page, masked);
-    PageEngine* const engines[] = {&engine};
-    return clearway::run_pages(cloud, cells, pages, engines, query, run.threads, progress, times)
-        .hits;
-  });
+  return run_staged(cloud, query, run,
+                    [&](const MotionTree& motion, std::uint64_t page_bytes, const RunIn& run_in) {
+                      const GridScene scene(query, motion, cloud, run.options);
+                      return run_pages(scene, page_bytes, run_in);
+                    });
+}
+
+HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const GridRun& run) {
+  return run_staged(cloud, query, run,
+                    [&](const MotionTree& motion, std::uint64_t page_bytes, const RunIn& run_in) {
+                      const SpheresOnPath path(query, motion);
+                      KdTreeEngine engine(cloud, path, {run.slots, page_bytes, run.cells_a_page});
+                      return run_in(engine);
+                    });
 }
 
 }  // namespace clearway

@@ -5,7 +5,7 @@
 #include "clearway/query.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_scene.hpp"
-#include "core/query/search_result.hpp"
+#include "support/engines/answer_sets.hpp"
 
 namespace clearway {
 
@@ -18,6 +18,9 @@ struct GridRun {
   std::uint32_t work_list = 1024;
   int threads = 3;
 };
+
+/// Runs the engine `kdtree` over a whole cloud, as run_grid() runs its engine.
+HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const GridRun& run);
 
 /// Runs the engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
 /// motion tree that together hold every pose: whole ranges for one cell, finer ones for the next.

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/engines/engines.hpp"
 
 namespace clearway {

@@ -4,9 +4,9 @@
 
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
-#include "cpu/brute_force.hpp"
 #include "io/result/result.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"

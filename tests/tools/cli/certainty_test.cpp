@@ -217,19 +217,6 @@ TEST_CASE("parts with an error budget merge to the bytes of the whole, and resum
   CHECK(json_of(again)["margins"] == whole["margins"]);
 }
 
-TEST_CASE("every engine gives the bytes of an error budget") {
-  const Bench bench;
-  bench.scan(wall(0.4, 12) + wall(0.55, 30) + "5 0 0\n");
-  const std::string query = "--radius 0.5 --error-model 0.08 --first-pose ";
-  require_success(bench.search(query + "--engine sweep", "whole.h5"));
-  check_json(json_of(bench.run("info --json whole.h5")), R"({"near_points": 30})");
-  for (const std::string engine : {"kdtree", "grid"}) {
-    CAPTURE(engine);
-    require_success(bench.search(query + "--engine " + engine, "out.h5"));
-    check_same(bench.bytes("out.h5"), bench.bytes("whole.h5"));
-  }
-}
-
 TEST_CASE("an error of 0 is a budget, and leaves the colliding points as they are") {
   const Bench bench;
   bench.scan(wall(0.4, 12) + "5 0 0\n");

@@ -4,10 +4,10 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/clouds.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 #include "tools/cli/support/spawned.hpp"
@@ -177,7 +177,7 @@ TEST_CASE("run --json prints one object with all that was asked for") {
     CHECK(report["seconds"][key].is_number());
   }
   check_json(report, R"({"environment_points": 30000, "cells_total": 1})");
-  CHECK(report["engine"] == (report["poses"] <= 200 ? "kdtree" : "sweep"));
+  CHECK(report["engine"] == "sweep");
   CHECK(report["bytes_read"]["coordinates"] > 30000);
   CHECK(report["bytes_read"]["sources"] > 0);
   check_json(report["bytes_read"], R"({"classes": 0, "origins": 0})");
@@ -223,7 +223,7 @@ TEST_CASE("the result is that of brute force") {
   const auto first = brute_force_first_poses(environment, {model, poses, {0.1, true}});
   Collisions expected;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] == HitSet::kNever) continue;
+    if (first[i] == kNoPose) continue;
     expected.source.push_back(i);
     expected.xyz.push_back(environment[i]);
     expected.first_pose.push_back(first[i]);

@@ -169,11 +169,10 @@ TEST_CASE("a verdict says what was ignored") {
 
 TEST_CASE("every engine gives the same bytes, whatever the order of what is ignored") {
   const Garden garden;
-  require_success(
-      garden.search("--ignore-class 6,1 --ignore-box 7.02,0,-1,8,1,1 --first-pose -o a.h5"));
+  require_success(garden.search("--ignore-class 6,1 --ignore-box 7.02,0,-1,8,1,1 -o a.h5"));
   for (const std::string engine : {"sweep", "grid", "kdtree"}) {
     require_success(
-        garden.search("--ignore-box 7.02,0,-1,8,1,1 --ignore-class 1 --ignore-class 6 --first-pose "
+        garden.search("--ignore-box 7.02,0,-1,8,1,1 --ignore-class 1 --ignore-class 6 "
                       "--force -o b.h5 --engine " +
                       engine));
     check_same(garden.bytes("a.h5"), garden.bytes("b.h5"));

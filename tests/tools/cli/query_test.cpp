@@ -7,8 +7,8 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
@@ -53,7 +53,7 @@ Collisions brute_collisions(const Inputs& inputs, Query query) {
   const auto first = brute_force_first_poses(inputs.environment, query);
   Collisions rows;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] == HitSet::kNever) continue;
+    if (first[i] == kNoPose) continue;
     rows.source.push_back(i);
     rows.xyz.push_back(inputs.environment[i]);
     if (query.first_pose) rows.first_pose.push_back(first[i]);
@@ -118,10 +118,8 @@ TEST_CASE("clearances are those of brute force, beside the same collisions") {
   check_says(run.err, "points are within the clearance of 0.4 m");
   check_outcome(work.run("verify out.h5"), 0);
 
-  // The set comes from kdtree; compare says that only one side has clearances.
-  require_success(
-      work.run_hall("hall/site.h5", "set.h5",
-                    std::string("--engine kdtree") + (first_pose ? " --first-pose" : "")));
+  // compare says that only one side has clearances.
+  require_success(work.run_hall("hall/site.h5", "set.h5", first_pose ? "--first-pose" : ""));
   check_outcome(work.run("compare out.h5 set.h5"), 0, kAnything, "clearance");
 }
 
@@ -197,17 +195,10 @@ TEST_CASE("an export does not overwrite the result it is of") {
   }
 }
 
-TEST_CASE("between poses both engines find what brute force finds") {
+TEST_CASE("a search between poses finds what brute force finds") {
   const Work work{Hall::small()};
   const std::string site = "hall/site.h5";
-  const std::string sweep = "sweep.h5", kdtree = "kdtree.h5";
-  for (const std::string& options :
-       {std::string("--between-poses"), std::string("--between-poses --first-pose")}) {
-    require_success(work.run_hall(site, "sweep.h5", "--force --engine sweep " + options));
-    require_success(work.run_hall(site, "kdtree.h5", "--force --engine kdtree " + options));
-    check_outcome(work.run("compare " + sweep + " " + kdtree), 0);
-    check_same(work.bytes("sweep.h5"), work.bytes("kdtree.h5"));
-  }
+  require_success(work.run_hall(site, "sweep.h5", "--between-poses --first-pose"));
   const Inputs inputs;
   Query query = inputs.query();
   const std::size_t at_poses = brute_collisions(inputs, query).size();
@@ -217,22 +208,28 @@ TEST_CASE("between poses both engines find what brute force finds") {
   CHECK(same_rows(read_rows(ResultReader(work.folder / "sweep.h5")), expected));
 
   require_success(work.run_hall(site, "set.h5", "--first-pose"));
-  check_outcome(work.run("compare set.h5 " + sweep), 1, kAnything, "between poses");
+  check_outcome(work.run("compare set.h5 sweep.h5"), 1, kAnything, "between poses");
 }
 
 TEST_CASE("queries that no engine or not this engine answers are wrong usage") {
   const Work work;
   const std::string site = "hall/site.h5";
-  for (const std::string engine : {"", " --engine sweep", " --engine kdtree"}) {
-    check_refused(
-        work.run_hall(site, "out.h5", std::string("--clearance 0.4 --between-poses") + engine), 2,
-        "clearances and motion between poses cannot be combined");
-  }
-  check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --engine kdtree"), 2,
-                "--engine sweep");
+  check_refused(work.run_hall(site, "out.h5", "--clearance 0.4 --between-poses"), 2,
+                "clearances and motion between poses cannot be combined");
   for (const std::string engine : {"grid", "kdtree"}) {
-    check_refused(work.run_hall(site, "out.h5", std::string("--profile 0.4 --engine ") + engine), 2,
-                  std::string("engine ") + engine + " has no profile ... --engine sweep");
+    for (const auto& [options, what] : {std::pair{"--between-poses", "motion between poses"},
+                                        {"--first-pose", "first poses"},
+                                        {"--clearance 0.4", "clearances"},
+                                        {"--profile 0.4", "a profile"},
+                                        {"--floor 0", "a floor"},
+                                        {"--error-scan 0.01", "errors"},
+                                        {"--depth", "depths"}}) {
+      check_refused(work.run_hall(site, "out.h5", options + (" --engine " + engine)), 2,
+                    "engine " + engine +
+                        " finds the points that collide at the poses, and nothing "
+                        "else: expected engine sweep for " +
+                        what + " ... --engine sweep");
+    }
   }
   check_refused(work.run_hall(site, "out.h5", "--profile 0.4 --between-poses"), 2,
                 "a profile and motion between poses cannot be combined");

@@ -48,7 +48,7 @@ TEST_CASE("the smallest memory that a refusal names works, and a byte less is re
   const SmallHall hall;
   for (const std::string options :
        {"", "--first-pose", "--clearance 0.3 --first-pose", "--between-poses", "--threads 9",
-        "--threads 1", "--engine kdtree --first-pose --threads 4"}) {
+        "--threads 1", "--engine kdtree --threads 4", "--engine grid --threads 3"}) {
     CAPTURE(options);
     require_success(hall.search(options, "expected.h5"));
     const Outcome refused = hall.search(options + " --memory 1K");

@@ -8,9 +8,9 @@
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/query/search_result.hpp"
-#include "cpu/brute_force.hpp"
 #include "io/scans/point_reader.hpp"
 #include "support/catch.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
@@ -122,7 +122,7 @@ void check_against_brute_force(const Crop& crop, double radius) {
   const auto first = brute_force_first_poses(positions, {crop.model, crop.poses, {radius, true}});
   Collisions expected;
   for (std::size_t i = 0; i < first.size(); ++i) {
-    if (first[i] == HitSet::kNever) continue;
+    if (first[i] == kNoPose) continue;
     expected.source.push_back(i);
     expected.xyz.push_back(positions[i]);
     expected.first_pose.push_back(first[i]);

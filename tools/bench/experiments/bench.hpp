@@ -31,7 +31,7 @@ struct BenchOptions {
   std::string memory = "4G", device_memory = "2G";
   std::string gpus;   ///< --gpus of every run on a GPU, such as "0,1"; empty: the first with room
   bool cold = false;  ///< whether every run reads its store from the disk
-  SceneFiles also;    ///< the user's own query, for equality and choice; may be empty
+  SceneFiles also;    ///< the user's own query, for equality; may be empty
   double limit_seconds = 60;  ///< limit of one run; a longer run is stopped and has failed
   bool resume = false, force = false;
 };
@@ -175,7 +175,6 @@ void bench_scaling(Bench& bench);
 void bench_share(Bench& bench);
 void bench_hard(Bench& bench);
 void bench_equality(Bench& bench);
-void bench_choice(Bench& bench);
 void bench_shards(Bench& bench);
 void bench_surfaces(Bench& bench);
 void bench_seen(Bench& bench);

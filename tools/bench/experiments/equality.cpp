@@ -10,23 +10,23 @@ namespace {
 struct Mode {
   const char* name;
   std::vector<std::string> options;
-  bool kdtree = true, grid = false;  ///< whether these engines have the mode too
-  bool origins = false;              ///< whether the store has to know its scanner's places
+  bool plain = false;    ///< whether the engines kdtree and grid have the mode too
+  bool origins = false;  ///< whether the store has to know its scanner's places
 };
 
 const std::vector<Mode>& modes() {
   static const std::vector<Mode> kModes{
-      {"set", {}, true, true},
-      {"first pose", {"--first-pose"}, true, true},
+      {"set", {}, true},
+      {"first pose", {"--first-pose"}},
       {"between poses", {"--between-poses"}},
       {"between poses, first pose", {"--between-poses", "--first-pose"}},
-      {"clearance", {"--clearance", "0.3"}, false},
-      {"clearance below the radius, first pose", {"--clearance", "0.05", "--first-pose"}, false},
-      {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}, false},
-      {"profile", {"--profile", "0.3"}, false},
-      {"seen space", {"--seen"}, true, false, true},
-      {"seen space, small cubes", {"--seen", "--seen-cube", "0.1"}, false, false, true},
-      {"between poses, seen space", {"--between-poses", "--seen"}, true, false, true}};
+      {"clearance", {"--clearance", "0.3"}},
+      {"clearance below the radius, first pose", {"--clearance", "0.05", "--first-pose"}},
+      {"clearance, first pose", {"--clearance", "0.3", "--first-pose"}},
+      {"profile", {"--profile", "0.3"}},
+      {"seen space", {"--seen"}, false, true},
+      {"seen space, small cubes", {"--seen", "--seen-cube", "0.1"}, false, true},
+      {"between poses, seen space", {"--between-poses", "--seen"}, false, true}};
   return kModes;
 }
 
@@ -66,12 +66,12 @@ class Equality {
         return {{"equal", same_bytes(result, reference)}};
       };
       for (const char* engine : {"kdtree cpu", "grid cpu"}) {
-        const bool grid = engine == std::string("grid cpu");
-        if (grid ? !mode.grid || bench_.full() : !mode.kdtree) continue;  // the grid takes too long
+        const bool takes_too_long = engine == std::string("grid cpu") && bench_.full();
+        if (!mode.plain || takes_too_long) continue;
         compare(key + engine, files, bench_.engine(engine).with(mode.options), judge);
       }
       for (const char* engine : {"sweep cuda", "grid cuda"}) {
-        if (!bench_.cuda() || (std::string(engine) == "grid cuda" && !mode.grid)) continue;
+        if (!bench_.cuda() || (std::string(engine) == "grid cuda" && !mode.plain)) continue;
         for (const auto& [memory, bytes] : kDeviceMemory) {
           const auto on_device = bench_.engine(engine).with({"--device-memory", memory});
           const Json done =

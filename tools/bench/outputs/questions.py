@@ -151,8 +151,8 @@ def engines():
         *(f"run --env {scene}.h5 --model {scene}/model.ply --trajectory {scene}/trajectory.txt "
           f"--radius {radius} {mode} -o @.h5"
           for scene in ("tunnel", "mine", "plant") for radius, mode in (
-              ("0.1", ALL_TABLES), ("50cm", "--engine kdtree --first-pose"),
-              ("0.3", "--engine grid --first-pose"), ("0.3", "--between-poses --first-pose"))),
+              ("0.1", ALL_TABLES), ("50cm", "--engine kdtree"),
+              ("0.3", "--engine grid"), ("0.3", "--between-poses --first-pose"))),
     ]
 
 
@@ -203,8 +203,8 @@ def paths():
             ("tum.txt", "--lever-arm 0.5,0,1"))),
         f"{path}/xyzw.txt -o @.h5 => 3",
         *(f"run --env utm.h5 --model hall/model.ply --trajectory paths/utm.txt --radius {radius} {mode} -o @.h5"
-          for radius, mode in (("0.15", ALL_TABLES), ("0.15", "--engine kdtree --first-pose"),
-                               ("0.15", "--engine grid --first-pose"), ("2", "--first-pose"),
+          for radius, mode in (("0.15", ALL_TABLES), ("0.15", "--engine kdtree"),
+                               ("0.15", "--engine grid"), ("2", "--first-pose"),
                                ("0.15", "--between-poses --first-pose"))),
         "run --env utm.h5 --model models/sphere.obj --model-as solid --trajectory paths/utm.txt --radius 0.15 "
         f"{ALL_TABLES} -o utm_out.h5",

@@ -21,7 +21,7 @@
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/check_query.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 #include "search/result_header.hpp"
 
 namespace clearway::tool {

@@ -25,7 +25,7 @@
 #include "cli/support/inherited_store.hpp"
 #include "cli/support/program.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 
 namespace clearway::tool {
 

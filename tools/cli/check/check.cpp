@@ -46,7 +46,7 @@
 #include "io/store/file_kind.hpp"
 #include "search/check_corridor.hpp"
 #include "search/check_query.hpp"
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 #include "search/devices.hpp"
 
 namespace clearway::tool {

@@ -318,12 +318,9 @@ bool CheckPlan::has_budget() const {
   return std::ranges::any_of(kErrors, [this](const char* name) { return is_given(name); });
 }
 
-/// Clearances and profile that the user has not asked for. No search between poses has them, and
-/// only engine sweep.
+/// Clearances and profile that the user has not asked for. No search between poses has them.
 Words CheckPlan::distances() const {
-  const std::string engine = value_of("--engine");
-  const bool sweep = engine.empty() || engine == "auto" || engine == "sweep";
-  if (is_given("--between-poses") || !sweep) return {};
+  if (is_given("--between-poses")) return {};
   Words words;
   const std::string radius = value_of("--radius");
   if (!is_given("--clearance")) words = Words{"--clearance", times(radius, kClearanceRadii)};

@@ -37,7 +37,7 @@ std::vector<std::filesystem::path> vehicle_inputs(const std::filesystem::path& f
 }
 
 void check_vehicle_search(const SearchOptions& options) {
-  if (options.engine == Engine::kGrid || options.engine == Engine::kKdtree) {
+  if (options.engine != Engine::kSweep) {
     throw UsageError(std::string("--vehicle: engine ") + clearway::name_of(options.engine) +
                          " searches one model, not a vehicle of several bodies",
                      Remedy::kSweepEngine);

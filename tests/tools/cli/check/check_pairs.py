@@ -161,7 +161,7 @@ def question(rng):
                         "--ignore-class 18", "--ignore-class 2,18", "--between-poses",
                         "--ignore-box 10,0,-1,18,3,3", "--depth", "--error-scan 5mm",
                         "--error-pose 2cm --sigmas 2 --gap 0.5", "--error-angle 0.1deg"], 0.6)
-    words += draw(rng, ["--engine kdtree", "--engine grid", "--engine sweep", "--device cpu",
+    words += draw(rng, ["--engine sweep", "--device cpu",
                         "--threads 1", "--memory 1G"], 0.3)
     words += draw(rng, ["--min-points 3", "--split 5", "--chainage-start 100", "--every 2",
                         "--title A", "--client B", "--date 2026-01-02", "--classes 0.2,0.5"], 0.4)
@@ -223,7 +223,7 @@ def check(words, folder):
 # What only a search, this machine or this moment knows.
 OF_THE_MOMENT = {
     "seconds", "commands", "reused", "nothing_done", "was_finished", "engine", "device",
-    "device_estimate", "searches", "cells_read", "bytes_read", "resumed_cells", "resumed_poses",
+    "device_estimate", "searches", "cells_read", "bytes_read", "resumed_cells",
     "pages", "page_bytes", "slots", "needed_host_bytes", "peak_host_bytes", "peak_device_bytes",
     "looked_at"}
 
@@ -275,7 +275,7 @@ def fitting(words):
     else:
         text = re.sub(r"--columns \S+|--unit \S+", "", text)
     if "car.ply" not in text and "--model-as points" not in text and "spacing" not in text:
-        text = re.sub(r"--between-poses|--engine (kdtree|grid)", "", text)
+        text = re.sub("--between-poses", "", text)
     if "--near" in text:
         text = re.sub(r"--seen|--depth", "", text)
     if "site.h5" in text:

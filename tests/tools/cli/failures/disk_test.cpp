@@ -40,8 +40,7 @@ struct Place : Workplace {
   std::string search(const std::string& engine, const fs::path& output) const {
     return "run --env " + hall / "small_cells.h5" + " --model " + hall / "model.ply" +
            " --trajectory " + hall / "trajectory.txt" +
-           " --radius 0.1 --first-pose --threads 2 --device cpu --engine " + engine + " -o " +
-           quoted(output);
+           " --radius 0.1 --threads 2 --device cpu --engine " + engine + " -o " + quoted(output);
   }
 
   const Hall& hall = hall_of_small_cells();
@@ -140,9 +139,8 @@ TEST_CASE("a read-only disk: inputs are read from it, outputs are refused at onc
   {
     JournalWriter writer = JournalWriter::create(disk / "out.h5.journal", {{"radius", "1"}}, 1e9);
     JournalRecord record;
-    record.put(std::uint8_t{3});
+    record.put(std::uint8_t{2});  // points of a profile
     record.put_count(0);
-    record.put_count(1);
     writer.append(record);
   }
   const Names before = disk.files();

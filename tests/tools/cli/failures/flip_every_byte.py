@@ -50,7 +50,7 @@ class Site:
     def search(self, store, engine, output):
         return ["run", "--env", str(store), "--model", str(self.work / "model.ply"),
                 "--trajectory", str(self.work / "trajectory.txt"), "--radius", "0.8",
-                "--first-pose", "--device", "cpu", "--threads", "1", "--engine", engine, "-o",
+                "--device", "cpu", "--threads", "1", "--engine", engine, "-o",
                 str(output)]
 
     def journal(self, engine, options):

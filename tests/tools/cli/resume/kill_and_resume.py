@@ -220,13 +220,12 @@ def main():
     cases = {"sweep": ["--engine", "sweep", "--clearance", "0.3", "--first-pose"],
              "shard": ["--engine", "sweep", "--clearance", "0.3", "--profile", "0.3", "--shard",
                        "2/3"],
-             "grid": ["--engine", "grid", "--first-pose"],
+             "grid": ["--engine", "grid"],
              "error budget": ["--engine", "sweep", "--first-pose", "--error-scan", "0.01",
                               "--error-pose", "0.02"],
-             "kdtree": ["--engine", "kdtree"],
-             "kdtree first pose": ["--engine", "kdtree", "--first-pose", "--between-poses"]}
+             "kdtree": ["--engine", "kdtree"]}
     if arguments.device == "cuda":
-        cases = {name: options for name, options in cases.items() if "kdtree" not in name}
+        del cases["kdtree"]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         scene = Scene(arguments.program, work, arguments.device, arguments.points,

@@ -183,17 +183,3 @@ TEST_CASE("an automatic choice of the device goes on where it was") {
   command.replace(command.find("--device cpu"), 12, "--device auto");
   check_outcome(run_program(work.folder, command), 0, "resumes with ... on the CPU");
 }
-
-TEST_CASE("poses that were divided otherwise are counted once") {
-  const Work work;
-  Process process(work.command("--threads 1", "0.1", "kdtree"), work.folder / "log.txt");
-  work.wait_for_records(process, 3);
-  process.send(SIGKILL);
-  process.wait();
-  for (const char* threads : {"3", "2"}) {
-    const Outcome resumed =
-        work.run(std::string("--resume --json --threads ") + threads, "0.1", "kdtree");
-    if (resumed.exit_code != 0 || !json_of(resumed).contains("resumed_poses")) continue;
-    CHECK(json_of(resumed)["resumed_poses"] <= 1500);
-  }
-}

@@ -49,8 +49,7 @@ struct Work {
                       const std::string& engine = "grid") const {
     return "run --env " + hall.path("site.h5") + " --model " + hall.path("model.ply") +
            " --trajectory " + hall.path("trajectory.txt") + " --engine " + engine +
-           " --device cpu --first-pose --radius " + radius + " -o " + quoted(output) + " " +
-           options;
+           " --device cpu --radius " + radius + " -o " + quoted(output) + " " + options;
   }
   Outcome run(const std::string& options, const std::string& radius = "0.1",
               const std::string& engine = "grid") const {

@@ -15,15 +15,15 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <stdexcept>
 #include <string>
 
 #include "bench/peers/programs/peer.hpp"
 #include "clearway/model.hpp"
+#include "clearway/session.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/geometry/box.hpp"
-#include "core/util/progress.hpp"
-#include "cpu/kdtree_engine.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway::bench {
@@ -92,7 +92,6 @@ std::size_t poses_within(double limit, Peer& peer, std::span<const Pose> poses,
 
 struct Points {
   std::vector<Vec3> positions;
-  std::vector<std::uint64_t> slots;    ///< of the points in the store
   std::vector<std::uint64_t> sources;  ///< their source indices
 };
 
@@ -100,7 +99,6 @@ Points points_of(const StoreReader& store) {
   Points out;
   const std::uint64_t count = store.point_count();
   out.positions.reserve(count);
-  out.slots.reserve(count);
   out.sources.reserve(count);
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
     const auto chunks = store.coordinates(cell);
@@ -108,18 +106,19 @@ Points points_of(const StoreReader& store) {
     for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
       out.positions.push_back(
           position(store.quantisation(), chunks[0][i], chunks[1][i], chunks[2][i]));
-      out.slots.push_back(cell * store.cell_entries() + i);
       out.sources.push_back(sources[i]);
     }
   }
   return out;
 }
 
-/// Compares what the peer marked with the points that collide, which the kdtree engine finds.
-nlohmann::json compare(const Marks& marks, const Points& points, const HitSet& exact) {
+/// Compares what the peer marked with the points that collide. exact: their source indices in
+/// ascending order.
+nlohmann::json compare(const Marks& marks, const Points& points,
+                       std::span<const std::uint64_t> exact) {
   std::uint64_t colliding = 0, false_hits = 0, misses = 0, found = 0;
-  for (std::size_t i = 0; i < points.slots.size(); ++i) {
-    const bool is = exact.contains(points.slots[i]), said = marks.contains(i);
+  for (std::size_t i = 0; i < points.sources.size(); ++i) {
+    const bool is = std::ranges::binary_search(exact, points.sources[i]), said = marks.contains(i);
     colliding += is;
     found += said;
     false_hits += said && !is;
@@ -133,7 +132,7 @@ nlohmann::json compare(const Marks& marks, const Points& points, const HitSet& e
 
 void write_ids(const std::filesystem::path& path, const Marks& marks, const Points& points) {
   std::vector<std::uint64_t> ids;
-  for (std::size_t i = 0; i < points.slots.size(); ++i) {
+  for (std::size_t i = 0; i < points.sources.size(); ++i) {
     if (marks.contains(i)) ids.push_back(points.sources[i]);
   }
   std::sort(ids.begin(), ids.end());
@@ -180,10 +179,10 @@ nlohmann::json run(const Arguments& arguments) {
   }
   const double peak = peak_bytes();
 
-  NoProgress progress;
-  const HitSet exact =
-      run_kdtree(store, {model, poses, {arguments.options.radius, false}}, {threads}, progress);
-  nlohmann::json out = compare(marks, points, exact);
+  Session session(arguments.environment, {.device = Device::kCpu, .threads = threads});
+  const SessionAnswer exact =
+      session.search({{model}, poses, {.radius = arguments.options.radius}});
+  nlohmann::json out = compare(marks, points, exact.collisions().source);
   if (!arguments.ids.empty()) write_ids(arguments.ids, marks, points);
   std::vector<double> sorted = seconds;
   std::sort(sorted.begin(), sorted.end());

@@ -58,11 +58,4 @@ DeviceEstimate estimate_section(double pairs, int threads);
 /// With fewer points the CPU answers most queries before a GPU has started.
 std::uint64_t surely_many_points(int threads);
 
-/// The engine of the options or, where they leave it open, kdtree for few poses and a small radius,
-/// if it can answer the query within the memory, and otherwise sweep (docs/design/choice.md).
-/// on_gpu: the search is on GPUs, which takes the sweep. earlier: the engine of the run that is
-/// resumed, which continues with it; kAuto for none.
-Engine choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
-                     const SearchOptions& options);
-
 }  // namespace clearway

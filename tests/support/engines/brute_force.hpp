@@ -10,7 +10,7 @@
 
 namespace clearway {
 
-/// The first pose of every environment point (clearway/query.hpp), or HitSet::kNever. The oracle of
+/// The first pose of every environment point (clearway/query.hpp), or kNoPose. The oracle of
 /// all tests: it evaluates the predicate for every pair, and shares nothing but the predicate with
 /// the engines. O(|E| |M| |T|), on all cores. Supports motion between poses for models of points
 /// only.

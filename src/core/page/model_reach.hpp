@@ -9,11 +9,11 @@ namespace clearway {
 
 /// Finds the poses that bring a model point within the radius of a box, by a ball search in the
 /// model's tree at the middle pose of each node. Needs no field. Only for queries at poses.
-class GridReach final : public PoseReach {
+class ModelReach final : public PoseReach {
  public:
   /// All arguments but the cloud must outlive this object; of the cloud no points are read.
-  GridReach(const Query& query, const MotionTree& motion, const ModelTree& model,
-            const PackedCloud& cloud);
+  ModelReach(const Query& query, const MotionTree& motion, const ModelTree& model,
+             const PackedCloud& cloud);
 
   const MotionTree& motion() const override { return motion_; }
   void narrow(const Box& box, std::span<const std::uint32_t> nodes,

@@ -1,4 +1,4 @@
-#include "search/choose_engine.hpp"
+#include "search/device_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/chainage.hpp"
-#include "search/page_search.hpp"
 
 namespace clearway {
 namespace {
@@ -150,32 +149,6 @@ DeviceEstimate estimate_section(double pairs, int threads) {
 
 std::uint64_t surely_many_points(int threads) {
   return static_cast<std::uint64_t>(kStart * kPointsPerCore * std::max(threads, 1));
-}
-
-namespace {
-
-/// Where kdtree is faster than sweep, or nearly as fast (docs/design/choice.md).
-constexpr std::size_t kMostPosesOfKdtree = 200;
-constexpr double kLargestRadiusOfKdtree = 0.3;  ///< metres
-
-/// Whether engine kdtree can answer the query, within the memory, and soon enough.
-bool suits_kdtree(const StoreReader& store, const Query& query, const SearchOptions& options) {
-  const bool is_small =
-      query.poses.size() <= kMostPosesOfKdtree && query.radius <= kLargestRadiusOfKdtree;
-  const bool asks_for_sweep = query.clearance > 0 || query.profile > 0 || query.between_poses ||
-                              query.floor || query.model.is_surface() || !query.bodies.empty();
-  return is_small && !asks_for_sweep &&
-         kdtree_needed_bytes(store, query, options) <= options.memory_bytes;
-}
-
-}  // namespace
-
-Engine choose_engine(const StoreReader& store, const Query& query, Engine earlier, bool on_gpu,
-                     const SearchOptions& options) {
-  if (options.engine != Engine::kAuto) return options.engine;
-  if (on_gpu) return Engine::kSweep;
-  if (earlier == Engine::kSweep || earlier == Engine::kKdtree) return earlier;
-  return suits_kdtree(store, query, options) ? Engine::kKdtree : Engine::kSweep;
 }
 
 }  // namespace clearway

@@ -1,4 +1,4 @@
-#include "cpu/brute_force.hpp"
+#include "support/engines/brute_force.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -68,14 +68,14 @@ bool touched_on_way(const Vec3& e, const std::vector<Vec3>& from, const std::vec
 
 template <typename Element>
 std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const Query& query) {
-  std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
+  std::vector<std::uint32_t> first(environment.size(), kNoPose);
   const std::vector<Element> model = elements_of<Element>(query);
   const bool worth_threads = environment.size() * model.size() > kPairsWorthThreads;
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
     const std::vector<Element> at_pose = moved(model, query.poses[i]);
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      if (first[e] == HitSet::kNever && touched(environment[e], at_pose, query.radius) &&
+      if (first[e] == kNoPose && touched(environment[e], at_pose, query.radius) &&
           counts(query, i, environment[e])) {
         first[e] = i;
       }
@@ -86,7 +86,7 @@ std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const 
 
 std::vector<std::uint32_t> first_poses_of_ways(std::span<const Vec3> environment,
                                                const Query& query) {
-  std::vector<std::uint32_t> first(environment.size(), HitSet::kNever);
+  std::vector<std::uint32_t> first(environment.size(), kNoPose);
   const bool worth_threads = environment.size() * query.model.vertices.size() > kPairsWorthThreads;
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
     const bool moves_on = i + 1 < query.poses.size();
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> first_poses_of_ways(std::span<const Vec3> environment
         moves_on ? moved(query.model.vertices, query.poses[i + 1]) : std::vector<Vec3>();
 #pragma omp parallel for schedule(static) if (worth_threads)
     for (std::size_t e = 0; e < environment.size(); ++e) {
-      if (first[e] != HitSet::kNever) continue;
+      if (first[e] != kNoPose) continue;
       const Vec3& point = environment[e];
       if (!counts(query, i, point) && !(moves_on && counts(query, i + 1, point))) continue;
       if (moves_on ? touched_on_way(point, from, to, query.radius)
