@@ -1,7 +1,6 @@
 #include "cpu/range_search.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 
 #include "core/geometry/predicate.hpp"
@@ -23,9 +22,11 @@ constexpr double kNodeExtent = 0.5;
 
 double greatest_extent(const Box& box) { return box.size()[box.longest_axis()]; }
 
-/// Depth of the deepest stack of point batches: levels of spheres and of halved ranges of poses.
-std::size_t deepest(const SpheresOnPath& path) {
-  return ModelSpheres::kLevels + std::bit_width(path.query.poses.size()) + 2;
+/// Levels of the motion tree below a node. Poses may be spread so that it is not balanced.
+std::size_t levels_below(std::span<const MotionNode> nodes, std::uint32_t index) {
+  const MotionNode& node = nodes[index];
+  if (node.count == 1) return 1;
+  return 1 + std::max(levels_below(nodes, index + 1), levels_below(nodes, node.later));
 }
 
 }  // namespace
@@ -34,7 +35,9 @@ SpheresOnPath::SpheresOnPath(const Query& asked, const MotionTree& poses)
     : query(asked),
       motion(poses),
       spheres(asked.model.vertices, kLeafRadii * asked.radius),
-      bounds(pose_bounds(asked.poses, spheres.box())) {}
+      bounds(pose_bounds(asked.poses, spheres.box())),
+      levels(ModelSpheres::kLevels + 2 +
+             (poses.nodes().empty() ? 0 : levels_below(poses.nodes(), 0))) {}
 
 RangeSearch::RangeSearch(const PackedCloud& cloud, const SpheresOnPath& path)
     : cloud_(cloud),
@@ -46,7 +49,7 @@ RangeSearch::RangeSearch(const PackedCloud& cloud, const SpheresOnPath& path)
       inner_done_(cloud.blocks_per_cell()),
       decoded_(cloud.blocks_per_cell()),
       positions_(cloud.blocks_per_cell()),
-      x_(deepest(path) * kBatchPoints),
+      x_(path.levels * kBatchPoints),
       y_(x_.size()),
       z_(x_.size()),
       points_(x_.size()),
@@ -59,10 +62,10 @@ RangeSearch::RangeSearch(const PackedCloud& cloud, const SpheresOnPath& path)
 std::uint64_t RangeSearch::most_bytes(const PackedCloud& cloud, const SpheresOnPath& path) {
   // Each level of the descent has at most all blocks of the cell as candidates.
   const std::uint64_t of_block =
-      sizeof(BlockBox) + sizeof(BlockPositions) + 2 + deepest(path) * sizeof(Candidate);
+      sizeof(BlockBox) + sizeof(BlockPositions) + 2 + path.levels * sizeof(Candidate);
   const std::uint64_t of_point = 3 * sizeof(double) + sizeof(std::uint32_t);
   return sizeof(RangeSearch) + cloud.blocks_per_cell() * of_block +
-         deepest(path) * kBatchPoints * of_point + kBatchPoints * (sizeof(double) + 1) +
+         path.levels * kBatchPoints * of_point + kBatchPoints * (sizeof(double) + 1) +
          3 * sizeof(double) * path.spheres.largest_leaf();
 }
 

@@ -29,6 +29,7 @@ struct SpheresOnPath {
   const MotionTree& motion;
   ModelSpheres spheres;
   std::vector<PoseBound> bounds;  ///< one for each pose
+  std::size_t levels;             ///< the most levels of a descent through spheres and poses
 };
 
 /// Coherent fixed-range searches in the cells of a page: a descent through poses, model and a

@@ -1,6 +1,8 @@
 // Tests of what only the kdtree engine promises.
 #include "cpu/kdtree_engine.hpp"
 
+#include <cmath>
+
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "support/catch.hpp"
@@ -47,4 +49,13 @@ TEST_CASE("pages of one cell and of all, one slot and many") {
                   expected);
     }
   }
+}
+
+TEST_CASE("a path whose steps halve again and again is searched down to its last pose") {
+  // The tree over these poses is a list, and only its end touches the points.
+  Query query{std::vector<Vec3>{{0, 0, 0}}, {}, {.radius = 1e-3 * (1 + 1e-13)}};
+  for (int i = 0; i < 400; ++i) query.poses.push_back(translation({std::ldexp(8, -i), 0, 0}));
+  const std::vector<Quantum> points(2000, Quantum{-1000, 0, 0});
+  const MemoryCloud cloud(points, {{1e-6, 1e-6, 1e-6}, {0, 0, 0}});
+  check_equal(run_kdtree(cloud, query, {}).count(), points.size());
 }

@@ -27,7 +27,7 @@ PageEngines KdTreeKind::make(const SlotLayout& layout) {
 
 void KdTreeKind::report_search(EngineList engines, SearchReport&, const MessageLog& log) const {
   const auto& engine = dynamic_cast<const KdTreeEngine&>(*engines.front());
-  log.note("searches of a model point at a pose in a cell: " +
+  log.note("pairs of a pose and a model point that were searched: " +
            format_count(engine.tested_searches()));
 }
 

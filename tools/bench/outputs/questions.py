@@ -45,8 +45,7 @@ SCENES = [
 FLOOR = [
     f"run {HALL} --radius 0.2 --floor 0.3 {ALL_TABLES} -o floor.h5",
     f"run {CELLS} --radius 0.2 --floor 0.3 --between-poses -o @.h5",
-    f"run {CELLS} --radius 0.2 --floor 0.3 --engine grid -o @.h5",
-    f"run {CELLS} --radius 0.2 --floor 0.3 --engine kdtree -o @.h5",
+    f"run {CELLS} --radius 0.2 --floor 0.3 --engine kdtree -o @.h5 => 2",
     f"run {CELLS} --radius 0.2 --floor 0.3 --error-scan 0.01 --json -o @.h5",
     "conflicts floor.h5 --model hall/model.ply --trajectory hall/trajectory.txt -o @.csv",
 ]
@@ -128,8 +127,8 @@ def formats(data):
 MODES = {
     "sweep": ["", "--first-pose", "--clearance 0.4", "--profile 0.6", ALL_TABLES, "--between-poses",
               "--between-poses --first-pose"],
-    "kdtree": ["", "--first-pose", "--between-poses", "--between-poses --first-pose"],
-    "grid": ["", "--first-pose"],
+    "kdtree": [""],
+    "grid": [""],
 }
 
 
@@ -139,7 +138,7 @@ def engines():
         *(f"run {CELLS} --radius {radius} --engine {engine} {mode} -o @.h5"
           for engine, modes in MODES.items() for mode in modes for radius in ("0.02", "0.25")),
         *(f"run {HALL} --radius 3 --engine {engine} {mode} -o @.h5"
-          for engine, mode in (("sweep", ALL_TABLES), ("kdtree", "--first-pose"), ("grid", ""),
+          for engine, mode in (("sweep", ALL_TABLES), ("kdtree", ""), ("grid", ""),
                                ("sweep", "--between-poses"))),
         f"run {CELLS} --radius 0.15 -o set.h5",
         f"run {CELLS} --radius 0.15 {ALL_TABLES} -o tables.h5",
@@ -171,7 +170,7 @@ def models():
         f"run {BOX}/open.obj --model-as solid --radius 0.2 -o @.h5 => 3",
         *(f"run {BOX}/sphere.obj --radius 0.2 {options} -o @.h5" for options in (
             "--model-as points", "--model-as points --first-pose --between-poses",
-            "--model-spacing 0.1 --engine kdtree", "--model-spacing 5cm --engine grid --first-pose",
+            "--model-spacing 0.1 --engine kdtree", "--model-spacing 5cm --engine grid",
             "--model-vertices", "--floor 0.5 --clearance 0.4", "--model-as points --floor 50cm",
             "--model-as surface --first-pose --json")),
         f"run {CELLS} --radius 0.2 --floor 0.7 --first-pose -o @.h5",
@@ -189,7 +188,7 @@ def paths():
         *(f"{path}/{name} {mode} -o @.h5" for name in (
             "few_digits.txt", "one.txt", "repeated.txt", "back.txt", "jump.txt", "beside.txt", "leaving.txt",
             "empty.txt") for mode in (ALL_TABLES, "--between-poses --first-pose")),
-        *(f"{path}/{name} --engine {engine} --first-pose -o @.h5" for engine in ("kdtree", "grid")
+        *(f"{path}/{name} --engine {engine} -o @.h5" for engine in ("kdtree", "grid")
           for name in ("one.txt", "repeated.txt", "empty.txt")),
         f"{path}/fewest_digits.txt -o @.h5 => 3",
         f"{path}/fewest_digits.txt --allow-non-rigid --first-pose -o @.h5",
@@ -217,14 +216,14 @@ def paths():
 IGNORED = [
     *(f"run {CLASSES} --radius 0.2 --ignore-class {classes} {mode} -o @.h5"
       for classes in ("2", "2,3", "0-5 --ignore-class 7") for mode in ("", ALL_TABLES)),
-    f"run {CLASSES} --radius 0.2 --first-pose --ignore-class 2 --engine kdtree -o @.h5",
-    f"run {CLASSES} --radius 0.2 --first-pose --ignore-class 2 --engine grid -o @.h5",
+    f"run {CLASSES} --radius 0.2 --ignore-class 2 --engine kdtree -o @.h5",
+    f"run {CLASSES} --radius 0.2 --ignore-class 2 --engine grid -o @.h5",
     f"run {CLASSES} --radius 0.2 --between-poses --first-pose --ignore-class 6 --json -o @.h5",
     f"run {CLASSES} --radius 0.2 {ALL_TABLES} --ignore-class 2,3,6 --json -o @.h5",
     f"run {CLASSES} --radius 0.2 {ALL_TABLES} --ignore-class 2 --ignore-box 20,-5,0,40,20,3 -o ignored.h5",
     *(f"run {CELLS} --radius 0.2 {boxes} --first-pose -o @.h5" for boxes in (
         "--ignore-box 0,-5,0,10,5,3", "--ignore-box -100,-100,-100,200,200,200",
-        "--ignore-box 0,-5,0,10,5,3 --ignore-box 5,-9,-1,15,9,1 --engine kdtree")),
+        "--ignore-box 0,-5,0,10,5,3 --ignore-box 5,-9,-1,15,9,1")),
     f"run {BOX}/sphere.obj --model-as solid --radius 0.2 --ignore-box 0,-5,-1,50,5,0.4 {ALL_TABLES} -o @.h5",
     f"run {CELLS} --radius 0.2 --ignore-class 2 -o @.h5 => 2",
     f"run {CELLS} --radius 0.2 --ignore-box 1,1,1,0,2,2 -o @.h5 => 2",
@@ -290,7 +289,7 @@ RUN_REFUSES = [
 def shards():
     """Parts and what merge makes of them, with every table and engine."""
     kinds = {"set": f"{CELLS} --radius 0.2", "all": f"{CELLS} --radius 0.2 {ALL_TABLES}",
-             "kdtree": f"{CELLS} --radius 0.2 --engine kdtree --first-pose",
+             "kdtree": f"{CELLS} --radius 0.2 --engine kdtree",
              "grid": f"{CELLS} --radius 0.2 --engine grid",
              "wagon": f"{TUNNEL} --vehicle wagon.json --radius 0.3 {ALL_TABLES}",
              "ignored": f"{CLASSES} --radius 0.2 --first-pose --ignore-class 2",
@@ -676,9 +675,7 @@ INTERRUPTED = {
     "sweep": _run(f"{LONG} --engine sweep"),
     "tables": _run(f"{LONG} --engine sweep {ALL_TABLES}"),
     "kdtree": _run(f"{LONG} --engine kdtree"),
-    "kdtree, first poses": _run(f"{LONG} --engine kdtree --first-pose"),
     "grid": _run(f"{LONG} --engine grid"),
-    "grid, first poses": _run(f"{LONG} --engine grid --first-pose"),
     "between poses": _run(f"{LONG} --engine sweep --between-poses --first-pose"),
     "solid": _run(f"{LONG_PATH} --model models/sphere.obj --model-as solid {ALL_TABLES}"),
     "bodies": _run(f"{LONG_PATH} --vehicle points.json --first-pose"),
