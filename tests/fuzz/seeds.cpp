@@ -12,6 +12,7 @@
 #include "support/bytes/sbet_bytes.hpp"
 #include "support/clouds.hpp"
 #include "support/land_xml.hpp"
+#include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -278,23 +279,22 @@ void write_result_seeds(Seeds seeds) {
   }
 }
 
-/// Payloads of every kind of record, in the forms that journal.cpp needs for its first bytes 0
-/// to 3.
-std::vector<std::string> payloads_of(char kind) {
-  const bool first_pose = kind % 2 == 1, clearance = kind >= 2;
-  const std::string bits("\5\0\0\0\0\0\0\0", 8);
-  const std::string poses = first_pose ? "\7\11" : "";
-  const std::string distance("\0\0\0\0\0\0\xb0\x3f\4", 9);
-  std::string cell = std::string("\1\1\1\0", 4) + bits + poses;
-  if (clearance) cell += std::string("\1\0", 2) + bits + distance + distance;
-  const std::string marks = std::string("\2\2\0", 3) + bits + (first_pose ? "\7" : "") +
-                            std::string(1, '\1') + bits + (first_pose ? "\x84\1" : "");
-  return {cell, marks, std::string("\3\2\x90\1", 4)};
+/// Payloads of records, in the form that journal.cpp needs for a first byte.
+std::vector<std::string> payloads_of(int kind) {
+  const bool first_pose = (kind & 1) != 0, clearance = (kind & 2) != 0, profile = (kind & 8) != 0;
+  // A word of two points, and for each of them a pose and a squared distance of 1/16
+  const std::string rows("\1\0\5\0\0\0\0\0\0\0", 10), poses("\7\0\0\0\11\0\0\0", 8);
+  const std::string distance("\0\0\0\0\0\0\xb0\x3f", 8);
+  std::string cell = clearance ? std::string("\1\2\0\1\0", 5) : std::string("\1\1\0\0", 4);
+  cell += rows + (first_pose ? poses : "");
+  if (clearance) cell += rows + poses + distance + distance;
+  if (profile) return {cell, "\2\1\5" + distance + '\7'};
+  return {cell};
 }
 
 void write_journal_seeds(Seeds seeds) {
   const ScratchFolder folder;
-  for (char kind = 0; kind < 4; ++kind) {
+  for (const int kind : {0, 1, 2, 3, 8, 11}) {
     std::string payloads(1, static_cast<char>(kind + 4));
     std::filesystem::remove(folder / "a.journal");
     {
@@ -308,8 +308,9 @@ void write_journal_seeds(Seeds seeds) {
     }
     const std::string file = bytes_of(folder / "a.journal");
     seeds.add(payloads);
-    seeds.add(kind + file);
-    seeds.add(kind + file.substr(0, file.size() - 2));
+    const char first = static_cast<char>(kind);
+    seeds.add(first + file);
+    seeds.add(first + file.substr(0, file.size() - 2));
   }
 }
 

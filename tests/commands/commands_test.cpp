@@ -1,0 +1,304 @@
+// Asks the program what the texts beside this file ask, and checks its answers. README.md says how
+// they are written. Called with the texts to run, and then with options of Catch.
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "catch_session.hpp"
+#include "support/catch.hpp"
+#include "tools/cli/support/program.hpp"
+
+namespace clearway::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A line of a text that begins with a word, and the lines below it that are further indented.
+struct Statement {
+  std::string place;  ///< file and line
+  std::string word, rest;
+  std::vector<std::string> rows = {};  ///< lines below it that begin with "|", without that
+  std::vector<Statement> body = {};
+};
+
+std::string trimmed(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return "";
+  return text.substr(first, text.find_last_not_of(' ') + 1 - first);
+}
+
+class Parser {
+ public:
+  explicit Parser(const fs::path& file) : name_(file.filename().string()), text_(bytes_of(file)) {
+    std::string line;
+    while (std::getline(text_, line)) lines_.push_back(line);
+  }
+
+  std::vector<Statement> parse() { return block(0); }
+
+ private:
+  static std::size_t indent_of(const std::string& line) { return line.find_first_not_of(' '); }
+  static bool says_nothing(const std::string& line) {
+    const std::size_t at = indent_of(line);
+    return at == std::string::npos || line[at] == '#';
+  }
+
+  /// The statements that are indented by at least `least`, up to the first that is not.
+  std::vector<Statement> block(std::size_t least) {
+    std::vector<Statement> statements;
+    for (; next_ < lines_.size(); ++next_) {
+      const std::string& line = lines_[next_];
+      if (says_nothing(line)) continue;
+      const std::size_t indent = indent_of(line);
+      if (indent < least) break;
+      const std::string text = line.substr(indent);
+      const std::size_t end = std::min(text.find(' '), text.size());
+      Statement statement{place(), text.substr(0, end), trimmed(text.substr(end))};
+      ++next_;
+      take_rows(indent, statement);
+      statement.body = block(indent + 1);
+      --next_;
+      statements.push_back(std::move(statement));
+    }
+    return statements;
+  }
+
+  /// Takes the rows that follow at once. One space after the bar is no part of a row.
+  void take_rows(std::size_t indent, Statement& statement) {
+    for (; next_ < lines_.size(); ++next_) {
+      const std::string& line = lines_[next_];
+      const std::size_t at = indent_of(line);
+      if (at == std::string::npos || at <= indent || line[at] != '|') return;
+      const std::size_t begin = at + (line.substr(at + 1, 1) == " " ? 2 : 1);
+      statement.rows.push_back(line.substr(begin));
+    }
+  }
+
+  std::string place() const { return name_ + ":" + std::to_string(next_ + 1); }
+
+  std::string name_;
+  std::istringstream text_;
+  std::vector<std::string> lines_;
+  std::size_t next_ = 0;
+};
+
+using Variables = std::map<std::string, std::string>;
+
+std::string replaced(std::string text, const Variables& variables) {
+  for (const auto& [name, value] : variables) {
+    const std::string key = "{" + name + "}";
+    for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos; at += value.size()) {
+      text.replace(at, key.size(), value);
+    }
+  }
+  return text;
+}
+
+/// The parts of a text between separators, without the spaces around them.
+std::vector<std::string> parts_of(const std::string& text, const std::string& separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    parts.push_back(trimmed(text.substr(begin, end - begin)));
+    begin = end + separator.size();
+  }
+  return parts;
+}
+
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream in(text);
+  return {std::istream_iterator<std::string>(in), {}};
+}
+
+/// A text: what is made once, and the tests.
+struct Text {
+  explicit Text(const fs::path& file) : name(file.stem().string()), all(Parser(file).parse()) {}
+
+  std::string name;
+  std::vector<Statement> all;
+  std::map<std::string, std::unique_ptr<ScratchFolder>> made = {};  ///< folders of set-ups
+};
+
+/// Runs the statements of one test, or of a set-up, in a folder.
+class Run {
+ public:
+  Run(Text& text, const ScratchFolder& folder) : text_(text), folder_(folder) {}
+
+  void body(const std::vector<Statement>& statements, const Variables& variables) {
+    for (std::size_t i = 0; i < statements.size(); ++i) {
+      const RowName place(statements[i].place);
+      if (statements[i].word == ">") {
+        ask(statements, i, variables);
+      } else {
+        step(statements[i], variables);
+      }
+    }
+  }
+
+ private:
+  /// Asks the program: `ARGUMENTS => CODE WORDS`, the exit code and what it says. A program that
+  /// refuses prints messages alone, unless a check that follows says what it prints.
+  void ask(const std::vector<Statement>& statements, std::size_t i, const Variables& variables) {
+    const std::string text = filled(statements[i].rest, variables);
+    const std::size_t arrow = std::min(text.rfind(" => "), text.size());
+    const auto [arguments, pipe] = split_input(text.substr(0, arrow));
+    outcome_ = run_program(folder_, arguments, pipe);
+    std::size_t digits = 0;
+    const std::string expected = arrow < text.size() ? text.substr(arrow + 4) : "0";
+    const int code = std::stoi(expected, &digits);
+    const std::string words = trimmed(expected.substr(digits));
+    bool may_print = code < 2 || code > 4;
+    for (std::size_t k = i + 1; k < statements.size() && statements[k].word != ">"; ++k) {
+      may_print = may_print || statements[k].word == "out" || statements[k].word == "json";
+    }
+    check_outcome(outcome_, code, words.empty() ? kAnything : words, may_print ? kAnything : "");
+  }
+
+  /// A text in which variables have their values.
+  std::string filled(const std::string& text, const Variables& variables) const {
+    return replaced(replaced(text, variables), known_);
+  }
+
+  static std::pair<std::string, fs::path> split_input(const std::string& arguments) {
+    const std::size_t at = arguments.rfind(" < ");
+    if (at == std::string::npos) return {arguments, {}};
+    return {arguments.substr(0, at), trimmed(arguments.substr(at + 3))};
+  }
+
+  void step(const Statement& statement, const Variables& variables) {
+    const std::string& word = statement.word;
+    const std::string rest = filled(statement.rest, variables);
+    const std::vector<std::string> words = words_of(rest);
+    std::string text;
+    for (const std::string& row : statement.rows) text += filled(row, variables) + "\n";
+    if (word == "$") return shell(rest);
+    if (word == "use") return use(rest);
+    if (word == "for") return repeat(statement, rest, variables);
+    if (word == "put") return put_bytes(folder_ / rest, text);
+    if (word == "out") return check_says(outcome_.out, rest);
+    if (word == "err") return check_says(outcome_.err, rest);
+    if (word == "without") return check_lacks(outcome_.err + outcome_.out, rest);
+    if (word == "json") return check_json_text(outcome_.out, rest.empty() ? text : rest);
+    if (word == "near") {
+      const double number = std::stod(words.at(1));
+      const double tolerance = words.size() > 2 ? std::stod(words[2]) : 1e-5 * std::abs(number);
+      return check_near(json_of(outcome_), words.at(0), number, tolerance);
+    }
+    if (word == "let") return let(words.at(0), words.at(1));
+    if (word == "warnings") return check_equal(codes_of(json_of(outcome_)), words);
+    if (word == "same") {
+      return check_same(bytes_of(folder_ / words.at(0)), bytes_of(folder_ / words.at(1)));
+    }
+    if (word == "text") {
+      return check_says(bytes_of(folder_ / words.at(0)), trimmed(rest.substr(words[0].size())));
+    }
+    if (word == "absent" || word == "exists") {
+      for (const std::string& name : words) {
+        const bool exists = fs::exists(fs::symlink_status(folder_ / name));
+        if (exists != (word == "exists")) fail_check(name + (exists ? " exists" : " is missing"));
+      }
+      return;
+    }
+    fail_check("'" + word + "' is no statement");
+  }
+
+  /// Gives a variable the value at a pointer of the JSON that was printed.
+  void let(const std::string& name, const std::string& pointer) {
+    const nlohmann::json value = json_of(outcome_).at(nlohmann::json::json_pointer(pointer));
+    known_[name] = value.is_string() ? value.get<std::string>() : value.dump();
+  }
+
+  static std::vector<std::string> codes_of(const nlohmann::json& report) {
+    std::vector<std::string> codes;
+    for (const nlohmann::json& warning : report.at("warnings")) codes.push_back(warning["code"]);
+    return codes;
+  }
+
+  void shell(const std::string& command) {
+    const std::string line = "cd " + quoted(folder_ / "") + " && { " + command + "; }";
+    if (std::system(line.c_str()) != 0) fail_check("the shell failed");
+  }
+
+  /// Copies what a set-up has made, which is done when it is first used.
+  void use(const std::string& name) {
+    std::unique_ptr<ScratchFolder>& made = text_.made[name];
+    if (made == nullptr) {
+      const auto setup = std::ranges::find_if(
+          text_.all, [&](const Statement& one) { return one.word == "setup" && one.rest == name; });
+      if (setup == text_.all.end()) return fail_check("no set-up is called '" + name + "'");
+      made = std::make_unique<ScratchFolder>();
+      Run(text_, *made).body(setup->body, {});
+    }
+    fs::copy(*made / "", folder_ / "", fs::copy_options::recursive);
+  }
+
+  /// `for NAME in VALUES`, or `for NAME, NAME in` with a row of values for each turn.
+  void repeat(const Statement& statement, const std::string& rest, const Variables& variables) {
+    const std::size_t in = rest.find(" in");
+    const std::vector<std::string> names = parts_of(rest.substr(0, in), ",");
+    std::vector<std::vector<std::string>> turns;
+    for (const std::string& row : statement.rows) {
+      turns.push_back(parts_of(filled(row, variables), " ; "));
+    }
+    for (const std::string& value : words_of(rest.substr(std::min(in + 3, rest.size())))) {
+      turns.push_back({value});
+    }
+    if (turns.empty()) fail_check("no values");
+    for (const std::vector<std::string>& values : turns) {
+      if (values.size() != names.size()) {
+        fail_check(std::to_string(values.size()) + " values for " + std::to_string(names.size()));
+        continue;
+      }
+      Variables here = variables;
+      std::string shown;
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        here[names[i]] = values[i];
+        shown += names[i] + " = " + values[i] + " ";
+      }
+      const RowName turn(shown);
+      body(statement.body, here);
+    }
+  }
+
+  Text& text_;
+  const ScratchFolder& folder_;
+  Outcome outcome_{};
+  Variables known_;  ///< what `let` has set
+};
+
+std::vector<Text>& texts() {
+  static std::vector<Text> all;
+  return all;
+}
+
+}  // namespace
+}  // namespace clearway::test
+
+using namespace clearway::test;
+
+TEST_CASE("commands") {
+  REQUIRE_FALSE(texts().empty());
+  for (Text& text : texts()) {
+    for (const Statement& statement : text.all) {
+      if (statement.word == "setup") continue;
+      DYNAMIC_SECTION(text.name << ": " << statement.rest) {
+        if (statement.word != "test") fail_check(statement.place + ": expected a test");
+        const ScratchFolder folder;
+        Run(text, folder).body(statement.body, {});
+      }
+    }
+  }
+}
+
+int main(int count, char** arguments) {
+  const std::string ending = ".test";
+  int texts_end = 1;
+  for (; texts_end < count && std::string(arguments[texts_end]).ends_with(ending); ++texts_end) {
+    texts().emplace_back(std::filesystem::path(arguments[texts_end]));
+  }
+  arguments[texts_end - 1] = arguments[0];
+  return run_catch(count - texts_end + 1, arguments + texts_end - 1);
+}
