@@ -74,7 +74,7 @@ LEFT_OUT = re.compile(r"constexpr|static_assert|template|requires|noexcept|#|//|
 CONDITION = re.compile(r"^(\s*(?:\} else )?(?:if|while) \()(.*)(\)(?: \{| return.*;| continue;| break;)?)$")
 RETURN = re.compile(r"^(\s*return )([^{}]+)(;)$")
 ASSIGNMENT = re.compile(r"^(\s*(?:const )?[\w:.\->\[\]]+(?: [\w\[\]]+)? [-+]?= )([^{}]+)(;)$")
-CALL = re.compile(r"^(\s*)((?!return\b|throw\b|delete\b|else\b)[a-z_][\w.\->\[\]:]*\(.*\);)$")
+CALL = re.compile(r"^(\s*)((?!return\b|throw\b|delete\b|else\b|std::)[a-z_][\w.\->\[\]:]*\(.*\);)$")
 
 
 def is_balanced(text):
@@ -100,7 +100,8 @@ def mutants_of(line):
             if at < 0 or (operator == "!" and (" " + text)[at + 1] in "= "):
                 continue
             changed = (" " + text + " ").replace(operator, other, 1).strip()
-            yield f"{before}(clearway_mutants::is(@) ? ({changed}) : ({text})){after}"
+            cast = "static_cast<bool>" if form is CONDITION else ""
+            yield f"{before}(clearway_mutants::is(@) ? {cast}({changed}) : {cast}({text})){after}"
         return
     found = CALL.match(line)
     if found and is_balanced(found[2]):
