@@ -155,12 +155,17 @@ def save(folder, drawn):
 
 
 def drop_what_fails(folder, drawn, log):
-    """Restores the lines that the compiler names. Returns whether there were any."""
+    """Restores the lines that the compiler names, or else all of the files that it names. Returns
+    whether there were any."""
     tree, dropped = folder / "tree", set(drawn["dropped"])
     named = {(Path(os.path.normpath(name)).name, int(line))
              for name, line in re.findall(r"([\w./-]+\.[ch]pp):(\d+)(?::\d+)?: (?:error|note|required)", log)}
-    found = [number for number, mutant in enumerate(drawn["mutants"]) if number not in dropped and
-             (Path(mutant["file"]).name, mutant["line"] + 1) in named]
+    left = [(number, mutant) for number, mutant in enumerate(drawn["mutants"]) if number not in dropped]
+    found = [number for number, mutant in left
+             if (Path(mutant["file"]).name, mutant["line"] + 1) in named]
+    if not found:
+        files = {name for name, _ in named}
+        found = [number for number, mutant in left if Path(mutant["file"]).name in files]
     for number in found:
         mutant = drawn["mutants"][number]
         lines = (tree / mutant["file"]).read_text().split("\n")
