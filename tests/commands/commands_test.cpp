@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "catch_session.hpp"
@@ -130,7 +131,7 @@ class Run {
   void body(const std::vector<Statement>& statements, const Variables& variables) {
     for (std::size_t i = 0; i < statements.size(); ++i) {
       const RowName place(statements[i].place);
-      if (statements[i].word == ">") {
+      if (statements[i].word == ">" || statements[i].word == "?") {
         ask(statements, i, variables);
       } else {
         step(statements[i], variables);
@@ -151,10 +152,71 @@ class Run {
     const int code = std::stoi(expected, &digits);
     const std::string words = trimmed(expected.substr(digits));
     bool may_print = code < 2 || code > 4;
-    for (std::size_t k = i + 1; k < statements.size() && statements[k].word != ">"; ++k) {
+    for (std::size_t k = i + 1; k < statements.size(); ++k) {
+      if (statements[k].word == ">" || statements[k].word == "?") break;
       may_print = may_print || statements[k].word == "out" || statements[k].word == "json";
     }
     check_outcome(outcome_, code, words.empty() ? kAnything : words, may_print ? kAnything : "");
+    if (statements[i].word == "?") try_properties(arguments);
+  }
+
+  /// Tries what holds of every question: `run` with these arguments, which has ended. Two
+  /// properties are drawn by CLEARWAY_DRAW, such as a commit, and the question; all where it is not
+  /// set.
+  void try_properties(const std::string& arguments) const {
+    using Property = void (Run::*)(const std::string& arguments) const;
+    const std::pair<const char*, Property> all[] = {
+        {"one thread has the same bytes", &Run::with_one_thread},
+        {"parts that are merged have the same bytes", &Run::in_parts},
+        {"a run that is resumed leaves its result as it is", &Run::resumed},
+        {"its result is sound", &Run::verified}};
+    const char* const draw = std::getenv("CLEARWAY_DRAW");
+    const std::size_t first = draw != nullptr ? std::hash<std::string>()(draw + arguments) : 0;
+    const std::size_t count = draw != nullptr ? 2 : std::size(all);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto& [name, holds] = all[(first + i) % std::size(all)];
+      const RowName property(name);
+      (this->*holds)(arguments);
+    }
+    put_bytes(folder_ / "stdout.txt", outcome_.out);
+    put_bytes(folder_ / "stderr.txt", outcome_.err);
+  }
+
+  /// The arguments of a question without some options, and with others.
+  static std::string changed(const std::string& arguments, const std::string& more) {
+    static const std::regex left_out(" (--force|--json|--resume|--fail-on-collision|-o \\S+)");
+    return std::regex_replace(arguments, left_out, "") + " " + more;
+  }
+  static std::string output_of(const std::string& arguments) {
+    std::smatch found;
+    if (!std::regex_search(arguments, found, std::regex(" -o (\\S+)"))) fail_check("no -o");
+    return found[1];
+  }
+  void check_same_result(const std::string& arguments, const std::string& other) const {
+    check_same(bytes_of(folder_ / other), bytes_of(folder_ / output_of(arguments)));
+    fs::remove(folder_ / other);
+  }
+
+  void with_one_thread(const std::string& arguments) const {
+    require_success(run_program(folder_, changed(arguments, "-o again.h5 --threads 1")));
+    check_same_result(arguments, "again.h5");
+  }
+  void in_parts(const std::string& arguments) const {
+    for (const std::string part : {"1", "2", "3"}) {
+      require_success(run_program(
+          folder_, changed(arguments, "-o part" + part + ".h5 --shard " + part + "/3")));
+    }
+    require_success(run_program(folder_, "merge part2.h5 part1.h5 part3.h5 -o merged.h5"));
+    check_same_result(arguments, "merged.h5");
+    for (const char* part : {"part1.h5", "part2.h5", "part3.h5"}) fs::remove(folder_ / part);
+  }
+  void resumed(const std::string& arguments) const {
+    const std::string output = output_of(arguments), before = bytes_of(folder_ / output);
+    require_success(run_program(folder_, changed(arguments, "--resume -o " + output)));
+    check_same(bytes_of(folder_ / output), before);
+  }
+  void verified(const std::string& arguments) const {
+    require_success(run_program(folder_, "verify " + output_of(arguments)));
   }
 
   /// A text in which variables have their values.
