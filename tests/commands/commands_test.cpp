@@ -198,17 +198,17 @@ class Run {
   }
 
   void with_one_thread(const std::string& arguments) const {
-    require_success(run_program(folder_, changed(arguments, "-o again.h5 --threads 1")));
-    check_same_result(arguments, "again.h5");
+    require_success(run_program(folder_, changed(arguments, "-o tried.h5 --threads 1")));
+    check_same_result(arguments, "tried.h5");
   }
   void in_parts(const std::string& arguments) const {
     for (const std::string part : {"1", "2", "3"}) {
       require_success(run_program(
-          folder_, changed(arguments, "-o part" + part + ".h5 --shard " + part + "/3")));
+          folder_, changed(arguments, "-o tried" + part + ".h5 --shard " + part + "/3")));
     }
-    require_success(run_program(folder_, "merge part2.h5 part1.h5 part3.h5 -o merged.h5"));
-    check_same_result(arguments, "merged.h5");
-    for (const char* part : {"part1.h5", "part2.h5", "part3.h5"}) fs::remove(folder_ / part);
+    require_success(run_program(folder_, "merge tried2.h5 tried1.h5 tried3.h5 -o tried.h5"));
+    check_same_result(arguments, "tried.h5");
+    for (const char* part : {"tried1.h5", "tried2.h5", "tried3.h5"}) fs::remove(folder_ / part);
   }
   void resumed(const std::string& arguments) const {
     const std::string output = output_of(arguments), before = bytes_of(folder_ / output);
@@ -328,7 +328,7 @@ class Run {
   Text& text_;
   const ScratchFolder& folder_;
   Outcome outcome_{};
-  Variables known_;  ///< what `let` has set
+  Variables known_{{"program", CLEARWAY_PROGRAM}};  ///< also what `let` has set
 };
 
 std::vector<Text>& texts() {
