@@ -2,7 +2,6 @@
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +13,7 @@
 #include "core/util/lane_bits.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "cpu/nearest_free.hpp"
+#include "io/files/nested_loop.hpp"
 #include "io/files/thread_limit.hpp"
 
 namespace clearway {
@@ -82,8 +82,8 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
   CellRows depths{.words = words,
                   .distances = std::vector<double>(count),
                   .sources = std::vector<std::uint64_t>(count)};
-  const ParallelScope scope;
-  const auto search = piece_of(scope, [&](std::uint32_t part) {
+  const auto parts = static_cast<std::uint32_t>(divide_up(words.size(), kBlocksAtOnce));
+  for_each_nested(parts, [&](std::uint32_t part) {
     NearestFree& nearest = searches.local();
     std::array<Depth, kBlockPoints> found;
     const std::uint32_t first = part * kBlocksAtOnce;
@@ -100,17 +100,6 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
       progress.advance(static_cast<std::uint64_t>(std::popcount(words[block])));
     }
   });
-  scope.begin();
-  // Isolated, so that a thread that waits for this cell does not begin another one. The context is
-  // its own, because the end of another cell by an exception would otherwise end this loop early
-  // and without one, and the depths that are missing would be taken as found.
-  tbb::this_task_arena::isolate([&] {
-    tbb::task_group_context own(tbb::task_group_context::isolated);
-    tbb::parallel_for(std::uint32_t{0},
-                      static_cast<std::uint32_t>(divide_up(words.size(), kBlocksAtOnce)), search,
-                      own);
-  });
-  scope.end();
   rows.add(cell, {{PointQuestion::kDepths, depths}});
 }
 

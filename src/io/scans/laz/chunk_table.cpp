@@ -1,6 +1,5 @@
 #include "io/scans/laz/chunk_table.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -8,9 +7,9 @@
 #include <memory>
 #include <optional>
 
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/nested_loop.hpp"
 #include "io/scans/laz/coding/entropy_models.hpp"
 
 namespace clearway::laz {
@@ -214,14 +213,7 @@ std::size_t ChunkGroups::decode(const InputBuffer& input, std::span<const Chunk>
       damages[i] = damage;
     }
   };
-  // Reading happens in a stage of a pipeline, so a thread that waits here must not begin another
-  // stage.
-  tbb::this_task_arena::isolate([&] {
-    const ParallelScope scope;
-    const auto piece = piece_of(scope, decode_one);
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, taken, piece);
-  });
+  for_each_nested(taken, decode_one);  // in a stage of a pipeline
   for (std::size_t i = 0; i < taken; ++i) {
     if (damages[i]) refuse_chunk(input.name(), first + i, count, *damages[i]);
   }

@@ -1,14 +1,13 @@
 #include "io/scans/text/point_blocks.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <charconv>
 #include <span>
 
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/nested_loop.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/text/table_header.hpp"
 
@@ -170,14 +169,7 @@ std::optional<std::uint64_t> PointBlocks::read(InputBuffer& input, const ParseBl
     part.points.reserve(part.lines);
     part.good = (block.empty() || is_line_end(block.back())) && parse(block, part.points);
   };
-  // Reading happens in a stage of a pipeline, so a thread that waits here must not begin another
-  // stage.
-  tbb::this_task_arena::isolate([&] {
-    const ParallelScope scope;
-    const auto piece = piece_of(scope, read_one);
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, parts.size(), piece);
-  });
+  for_each_nested(parts.size(), read_one);  // in a stage of a pipeline
   std::uint64_t read = 0;
   InputBuffer::Mark end = input.mark();
   for (Part& part : parts) {
