@@ -51,10 +51,18 @@ SearchJournal::SearchJournal(std::filesystem::path path, JournalIdentity identit
       interval_seconds_(interval_seconds),
       rows_(cloud, query, *this) {
   if (read_ == nullptr) return;
-  replay(nullptr);  // checks all other records
   read_->for_each([this](JournalPayload payload) {
     JournalPayload rest = payload;
-    if (rest.take<JournalRecordKind>() == kCell) rows_.note(payload, payload.place());
+    switch (rest.take<JournalRecordKind>()) {
+      case kCell:
+        rows_.note(payload, payload.place());
+        break;
+      case kProfile:
+        take_profile(rest, nullptr);
+        break;
+      default:
+        rest.refuse("of an unknown kind");
+    }
   });
 }
 
@@ -137,23 +145,14 @@ CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& 
   };
 }
 
-void SearchJournal::replay(ProfileSet* profile) const {
+void SearchJournal::restore(ProfileSet& profile) const {
   if (read_ == nullptr) return;
   read_->for_each([&](JournalPayload payload) {
-    switch (payload.take<JournalRecordKind>()) {
-      case kCell:
-        return;
-      case kProfile:
-        replay_profile(payload, profile);
-        break;
-      default:
-        payload.refuse("of an unknown kind");
-    }
-    if (!payload.at_end()) payload.refuse("longer than what it holds");
+    if (payload.take<JournalRecordKind>() == kProfile) take_profile(payload, &profile);
   });
 }
 
-void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile) const {
+void SearchJournal::take_profile(JournalPayload payload, ProfileSet* profile) const {
   if (!(query_.profile > 0)) payload.refuse("of a profile that was not asked for");
   const double limit = rounded_product(query_.profile, query_.profile);
   for (std::uint64_t facts = payload.take_count(); facts > 0; --facts) {
@@ -168,6 +167,7 @@ void SearchJournal::replay_profile(JournalPayload& payload, ProfileSet* profile)
     }
     if (profile != nullptr) profile->offer(static_cast<std::uint32_t>(pose), squared, entry);
   }
+  if (!payload.at_end()) payload.refuse("longer than what it holds");
 }
 
 }  // namespace clearway

@@ -38,7 +38,7 @@ class SearchJournal final : public RowStorage {
   const AnswerRows& rows() const { return rows_; }
 
   /// Adds the points of a profile that the file held.
-  void restore(ProfileSet& profile) const { replay(&profile); }
+  void restore(ProfileSet& profile) const;
   /// Appends the facts of a page of these cells, after `profile` has taken them in and before the
   /// cells are added to the rows. Thread safe.
   void append_profile(std::span<const PlannedCell> cells, std::span<const ProfileFact> facts,
@@ -57,9 +57,9 @@ class SearchJournal final : public RowStorage {
 
  private:
   std::uint64_t append(JournalRecord& record);
-  /// Checks all records but those of cells, and adds what they say to a profile that is not null.
-  void replay(ProfileSet* profile) const;
-  void replay_profile(JournalPayload& payload, ProfileSet* profile) const;
+  /// Checks a record of a profile's points after its kind, and adds them to a profile that is not
+  /// null.
+  void take_profile(JournalPayload payload, ProfileSet* profile) const;
 
   const PackedCloud& cloud_;
   const Query& query_;
