@@ -166,12 +166,7 @@ void RangeSearch::add_candidate(const SearchTask& task, const Candidate& candida
     candidate_points_ += environment_.most_points(candidate.node);
     return;
   }
-  bool done = true;
-  for (const EnvironmentNode& child : environment_.children(candidate.node)) {
-    add_candidate(task, candidate_of(child));
-    done = done && is_done(child);
-  }
-  if (done) inner_done_[EnvironmentTree::inner_in_cell(candidate.node)] = 1;
+  for_each_child(candidate.node, [&](const Candidate& child) { add_candidate(task, child); });
 }
 
 /// Takes the candidates `begin` to `end` - 1 apart into points, batch by batch.
@@ -182,13 +177,9 @@ void RangeSearch::gather(const SearchTask& task, std::size_t begin, std::size_t 
 
 void RangeSearch::gather_node(const SearchTask& task, const Candidate& candidate) {
   if (candidate.node.is_block()) return gather_block(task, candidate.node.first_block);
-  bool done = true;
-  for (const EnvironmentNode& child : environment_.children(candidate.node)) {
-    const Candidate part = candidate_of(child);
-    if (!dismiss_or_take(task, part)) gather_node(task, part);
-    done = done && is_done(child);
-  }
-  if (done) inner_done_[EnvironmentTree::inner_in_cell(candidate.node)] = 1;
+  for_each_child(candidate.node, [&](const Candidate& child) {
+    if (!dismiss_or_take(task, child)) gather_node(task, child);
+  });
 }
 
 void RangeSearch::gather_block(const SearchTask& task, std::uint32_t block) {

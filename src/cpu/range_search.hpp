@@ -110,6 +110,16 @@ class RangeSearch {
   Candidate candidate_of(const EnvironmentNode& node) const {
     return {node, environment_.box(node, inner_boxes_)};
   }
+  /// Calls visit(child) for each child of an inner node, which is done if all of them are then.
+  template <typename Visit>
+  void for_each_child(const EnvironmentNode& node, const Visit& visit) {
+    bool done = true;
+    for (const EnvironmentNode& child : environment_.children(node)) {
+      visit(candidate_of(child));
+      done = done && is_done(child);
+    }
+    if (done) inner_done_[EnvironmentTree::inner_in_cell(node)] = 1;
+  }
   Columns positions_of(std::uint32_t block);
   void put_point(std::size_t to, Columns from, std::size_t i, std::uint32_t point) {
     x_[to] = from.x[i];
@@ -127,7 +137,7 @@ class RangeSearch {
   const Query& query_;
   double radius_squared_;
 
-  // Of the cell that is searched
+  // What follows, up to the stacks, belongs to the cell that is searched.
   PageRef page_{};
   std::uint32_t index_ = 0, cell_ = 0;
   std::array<PackedChunk<std::int32_t>, 3> chunks_;
