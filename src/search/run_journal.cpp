@@ -136,7 +136,7 @@ RunJournal::RunJournal(PendingFile& pending, const fs::path& output, const Searc
     return;
   }
   refuse_conversion(path_, read);
-  earlier_cells_ = answered_cells(read)[static_cast<std::size_t>(PointQuestion::kHits)];
+  earlier_cells_ = answered_cells(read)[index_of(PointQuestion::kHits)];
   if (!options.resume) {
     throw UsageError(path_.string() + ": an unfinished run with engine " +
                          value_of(*read.identity(), "engine") + " on " +

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "core/query/body_numbers.hpp"
-#include "core/util/lane_bits.hpp"
 
 namespace clearway {
 namespace {
@@ -100,8 +99,7 @@ bool is_depth(double distance, std::uint64_t source) {
   return distance >= 0 && std::isfinite(distance) && source != Depth::kNoPoint;
 }
 
-}  // namespace
-
+/// Takes the bits of a block of a cell. Refuses none, and points that the cell does not have.
 std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64_t block) {
   const auto bits = payload.take<std::uint64_t>();
   const std::uint64_t first = block * kBlockPoints;
@@ -111,6 +109,8 @@ std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64
   }
   return bits;
 }
+
+}  // namespace
 
 bool is_square(const Query& query, double squared) {
   return std::isfinite(squared) && (squared >= 0 || has_solids(query));
@@ -132,7 +132,7 @@ const char* name_of(PointQuestion question) {
   constexpr std::array<const char*, kQuestions> kNames{"hits",    "clearances",   "last",
                                                        "certain", "near",         "below",
                                                        "ignored", "ignored_high", "depths"};
-  return kNames[static_cast<std::size_t>(question)];
+  return kNames[index_of(question)];
 }
 
 CellRows hit_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index) {

@@ -21,6 +21,7 @@
 #include "core/page/page_engine.hpp"
 #include "core/query/search_result.hpp"
 #include "core/seen/cross_sections.hpp"
+#include "core/util/lane_bits.hpp"
 #include "io/result/journal.hpp"
 
 namespace clearway {
@@ -38,15 +39,16 @@ enum class PointQuestion : std::uint8_t {
   kDepths        ///< of the points that collide: the nearest free point, and its distance
 };
 inline constexpr std::size_t kQuestions = 9;
+/// The number of a question, below kQuestions.
+constexpr std::size_t index_of(PointQuestion question) {
+  return static_cast<std::size_t>(question);
+}
 
 /// The name of a question, such as "hits".
 const char* name_of(PointQuestion question);
 
 /// The kind of a record in a search's journal; its first byte.
 enum class JournalRecordKind : std::uint8_t { kCell = 1, kProfile = 2 };
-
-/// Takes the bits of a block of a cell. Refuses none, and points that the cell does not have.
-std::uint64_t take_points(JournalPayload& payload, const Cell& cell, std::uint64_t block);
 
 /// Whether this can be the square of a distance, which is below 0 for a point inside solids.
 bool is_square(const Query& query, double squared);
@@ -79,10 +81,9 @@ struct CellRows {
   void for_each(Visit visit) const {
     std::size_t row = 0;
     for (std::size_t block = 0; block < words.size(); ++block) {
-      for (std::uint64_t bits = words[block]; bits != 0; bits &= bits - 1) {
-        const auto bit = static_cast<std::size_t>(std::countr_zero(bits));
+      for_each_bit(words[block], [&](std::uint32_t bit) {
         visit(static_cast<std::uint32_t>(block * kBlockPoints + bit), row++);
-      }
+      });
     }
   }
 };
@@ -203,7 +204,6 @@ class AnswerRows {
   static std::uint64_t most_cell_bytes(const PackedCloud& cloud, const Query& query);
 
  private:
-  static std::size_t index_of(PointQuestion question) { return static_cast<std::size_t>(question); }
   const std::vector<std::uint64_t>& places_of(PointQuestion question) const {
     return places_[index_of(question)];
   }

@@ -1,13 +1,10 @@
 #include "stream/search_journal.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 #include <vector>
 
 #include "core/geometry/predicate.hpp"
-#include "core/query/body_numbers.hpp"
-#include "core/util/lane_bits.hpp"
 #include "stream/run_pages.hpp"
 
 namespace clearway {
@@ -19,7 +16,7 @@ std::array<std::uint64_t, kQuestions> answered_cells(const JournalReader& journa
     switch (payload.take<JournalRecordKind>()) {
       case JournalRecordKind::kCell:
         for (const PointQuestion question : questions_in(payload)) {
-          ++cells[static_cast<std::size_t>(question)];
+          ++cells[index_of(question)];
         }
         break;
       case JournalRecordKind::kProfile:

@@ -108,7 +108,7 @@ class JournalledScene {
 
 /// The cells whose colliding points a journal holds.
 std::uint64_t hits_in(const std::filesystem::path& path) {
-  return answered_cells(JournalReader(path))[static_cast<std::size_t>(PointQuestion::kHits)];
+  return answered_cells(JournalReader(path))[index_of(PointQuestion::kHits)];
 }
 
 /// Writes a journal with one record of these bytes, and opens it for the scene.

@@ -210,13 +210,12 @@ ordered_json describe(const ResultReader& result) {
 
 ordered_json describe(const JournalReader& journal) {
   const std::array cells = answered_cells(journal);
-  ordered_json description{
-      {"kind", "journal"},
-      {"version", kJournalVersion},
-      {"records", journal.records()},
-      {"finished_cells", cells[static_cast<std::size_t>(PointQuestion::kHits)]},
-      {"answered_cells", ordered_json::object()},
-      {"torn", journal.torn()}};
+  ordered_json description{{"kind", "journal"},
+                           {"version", kJournalVersion},
+                           {"records", journal.records()},
+                           {"finished_cells", cells[index_of(PointQuestion::kHits)]},
+                           {"answered_cells", ordered_json::object()},
+                           {"torn", journal.torn()}};
   for (std::size_t i = 0; i < kQuestions; ++i) {
     if (cells[i] == 0) continue;
     description["answered_cells"][name_of(static_cast<PointQuestion>(i))] = cells[i];
