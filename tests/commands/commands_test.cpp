@@ -250,7 +250,7 @@ class Run {
       return check_near(json_of(outcome_), words.at(0), number, tolerance);
     }
     if (word == "let") return let(words.at(0), words.at(1));
-    if (word == "warnings") return check_equal(codes_of(json_of(outcome_)), words);
+    if (word == "warnings") return check_equal(codes_in(json_of(outcome_).at("warnings")), words);
     if (word == "same") {
       return check_same(bytes_of(folder_ / words.at(0)), bytes_of(folder_ / words.at(1)));
     }
@@ -271,12 +271,6 @@ class Run {
   void let(const std::string& name, const std::string& pointer) {
     const nlohmann::json value = json_of(outcome_).at(nlohmann::json::json_pointer(pointer));
     known_[name] = value.is_string() ? value.get<std::string>() : value.dump();
-  }
-
-  static std::vector<std::string> codes_of(const nlohmann::json& report) {
-    std::vector<std::string> codes;
-    for (const nlohmann::json& warning : report.at("warnings")) codes.push_back(warning["code"]);
-    return codes;
   }
 
   void shell(const std::string& command) {

@@ -39,12 +39,6 @@ struct Files : Workplace {
   }
 };
 
-std::vector<std::string> codes_of(const nlohmann::json& messages) {
-  std::vector<std::string> codes;
-  for (const auto& message : messages) codes.push_back(message["code"]);
-  return codes;
-}
-
 }  // namespace
 
 TEST_CASE("trajectory info says what was understood") {
@@ -65,7 +59,7 @@ TEST_CASE("trajectory info says what was understood") {
   check_near(json, "/total_turn_degrees", 90);
   check_near(json, "/largest_turn/degrees", 1);
   check_near(json, "/last_pose/heading_degrees", 0, 1e-9);
-  CHECK(codes_of(json["notes"]) == std::vector<std::string>{"angle-frame"});
+  CHECK(codes_in(json["notes"]) == std::vector<std::string>{"angle-frame"});
 }
 
 TEST_CASE("trajectory info compares with a scan and a model") {
@@ -78,7 +72,7 @@ TEST_CASE("trajectory info compares with a scan and a model") {
   const auto far = json_of(files.info("path.csv --env far.h5 --json"));
   check_json(far, R"({"environment": {"poses_inside": 0}})");
   CHECK(far["environment"]["distance"].get<double>() > 10'000);
-  CHECK(codes_of(far["warnings"]) == std::vector<std::string>{"path-outside-scan"});
+  CHECK(codes_in(far["warnings"]) == std::vector<std::string>{"path-outside-scan"});
 
   const std::string model = "path.csv --model model.xyz --json --radius ";
   const auto wide = json_of(files.info(model + "2"));
@@ -86,7 +80,7 @@ TEST_CASE("trajectory info compares with a scan and a model") {
   CHECK(wide["largest_motion"].get<double>() > 1.74);
   const auto narrow = json_of(files.info(model + "0.1"));
   check_json(narrow, R"({"steps_above_radius": 90})");
-  CHECK(codes_of(narrow["warnings"]) == std::vector<std::string>{"steps-above-radius"});
+  CHECK(codes_in(narrow["warnings"]) == std::vector<std::string>{"steps-above-radius"});
   check_outcome(files.info("path.csv --radius 1"), 2);
 }
 
@@ -98,9 +92,9 @@ TEST_CASE("trajectory info tells a gap from steps that are all long") {
   }
   files.put("gap.txt", gap);
   const auto plain = json_of(files.info("gap.txt --json"));
-  CHECK(codes_of(plain["warnings"]) == std::vector<std::string>{"trajectory-jump"});
+  CHECK(codes_in(plain["warnings"]) == std::vector<std::string>{"trajectory-jump"});
   const auto both = json_of(files.info("gap.txt --json --model model.xyz --radius 0.1"));
-  CHECK(codes_of(both["warnings"]) ==
+  CHECK(codes_in(both["warnings"]) ==
         std::vector<std::string>{"trajectory-jump", "steps-above-radius"});
   check_json(both, R"({"steps_above_radius": 59, "warnings": {"1": {"numbers": {"steps": 58}}}})");
   const auto large = json_of(files.info("gap.txt --json --model model.xyz --radius 12"));
@@ -113,7 +107,7 @@ TEST_CASE("trajectory info warns of other axes, and takes an empty file") {
   for (int i = 0; i < 50; ++i) camera += "1 0 0 0 0 1 0 0 0 0 1 " + std::to_string(i) + "\n";
   files.put("camera.txt", camera);
   const auto json = json_of(files.info("camera.txt --json"));
-  CHECK(codes_of(json["warnings"]) == std::vector<std::string>{"forward-axis"});
+  CHECK(codes_in(json["warnings"]) == std::vector<std::string>{"forward-axis"});
   files.put("empty.txt", "");
   const auto empty = json_of(files.info("empty.txt --json"));
   check_json(empty, R"({"poses": 0})");

@@ -62,11 +62,8 @@ struct StatePlane : Workplace {
   static int found(const Outcome& outcome) { return json_of(outcome)["colliding_points"]; }
 };
 
-std::vector<std::string> codes_in(const Outcome& outcome) {
-  std::vector<std::string> codes;
-  const json report = json_of(outcome);
-  for (const auto& warning : report["warnings"]) codes.push_back(warning["code"]);
-  return codes;
+std::vector<std::string> warnings_in(const Outcome& outcome) {
+  return codes_in(json_of(outcome)["warnings"]);
 }
 
 bool has(const std::vector<std::string>& codes, const std::string& code) {
@@ -130,7 +127,7 @@ TEST_CASE("a scene in feet has the conflict that it has in metres, whoever names
   const Outcome other =
       scene.run("plain.csv", plain,
                 "--radius 1.004 --trajectory-unit " + std::string(survey ? "ift" : "us-ft"));
-  CHECK(has(codes_in(other), "two-feet"));
+  CHECK(has(warnings_in(other), "two-feet"));
 }
 
 TEST_CASE("a path that a command changes is understood as the given one is") {
@@ -205,15 +202,15 @@ TEST_CASE("feet are no warning where every input names its unit") {
   scene.write_path("plain.csv", "", 1);
   scene.write_path("metres.csv", "m", kMetresPerUsSurveyFoot);
   const std::string plain = "--model feet.xyz", named = plain + " --model-unit ft";
-  CHECK_FALSE(has(codes_in(scene.run("named.csv", named, "--radius 1ft")), "feet"));
+  CHECK_FALSE(has(warnings_in(scene.run("named.csv", named, "--radius 1ft")), "feet"));
   const Outcome converted = scene.run("metres.csv", named, "--radius 0.3m");
-  CHECK_FALSE(has(codes_in(converted), "feet"));
+  CHECK_FALSE(has(warnings_in(converted), "feet"));
   check_says(converted.err,
              "positions are in metres and were converted to US survey feet ... name their units");
   check_lacks(converted.err, "to give metres");
-  CHECK(has(codes_in(scene.run("named.csv", named, "--radius 1")), "feet"));
-  CHECK(has(codes_in(scene.run("named.csv", plain, "--radius 1ft")), "feet"));
-  CHECK(has(codes_in(scene.run("plain.csv", named, "--radius 1ft")), "feet"));
+  CHECK(has(warnings_in(scene.run("named.csv", named, "--radius 1")), "feet"));
+  CHECK(has(warnings_in(scene.run("named.csv", plain, "--radius 1ft")), "feet"));
+  CHECK(has(warnings_in(scene.run("plain.csv", named, "--radius 1ft")), "feet"));
 }
 
 TEST_CASE("a scan in ft is in the foot of the others") {
@@ -239,7 +236,7 @@ TEST_CASE("another unit than the metre is warned of where the scan names none") 
   scene.write_model("car.xyz", 1);
   const std::string car = "--model car.xyz";
   const auto warned = [&](const std::string& path, const std::string& rest) {
-    return has(codes_in(scene.run(path, car, rest)), "unit-assumed");
+    return has(warnings_in(scene.run(path, car, rest)), "unit-assumed");
   };
   CHECK_FALSE(warned("plain.csv", "--radius 10cm"));
   CHECK_FALSE(warned("m.csv", "--radius 1"));
@@ -266,7 +263,7 @@ TEST_CASE("keys and texts that name two units are warned of") {
     las.offset = {east, north, 0};
     place.put("a.las", las.build());
     const Outcome outcome = require_success(place.run("convert --json --force a.las -o a.h5"));
-    return codes_in(outcome);
+    return warnings_in(outcome);
   };
   const auto keys = [](const std::vector<std::array<std::uint16_t, 2>>& all) {
     return LasBytes::Record{"LASF_Projection", 34735, geo_keys(all)};

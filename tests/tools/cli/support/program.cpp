@@ -91,6 +91,12 @@ nlohmann::json json_of(const Outcome& outcome, const Caller& caller) {
   return value;
 }
 
+std::vector<std::string> codes_in(const nlohmann::json& messages) {
+  std::vector<std::string> codes;
+  for (const nlohmann::json& message : messages) codes.push_back(message.at("code"));
+  return codes;
+}
+
 void check_cases(const std::function<Outcome(const std::string&)>& ask,
                  const std::vector<Case>& cases, const Caller& caller) {
   for (const Case& one : cases) {

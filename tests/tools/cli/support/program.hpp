@@ -55,6 +55,9 @@ const Outcome& require_success(const Outcome& outcome, const Caller& caller = Ca
 /// The JSON that a program printed; ends the test where it printed something else.
 nlohmann::json json_of(const Outcome& outcome, const Caller& caller = Caller::current());
 
+/// The codes of the messages of a report, in their order.
+std::vector<std::string> codes_in(const nlohmann::json& messages);
+
 /// A row of a table: a question to a program, and what is expected of its answer. A program that
 /// refuses, with exit code 2, 3 or 4, has to print messages alone.
 struct Case {
