@@ -1,6 +1,7 @@
 """A small scene for the tests of the Python module, with its answer by brute force."""
 
 import shutil
+import struct
 import tempfile
 import unittest
 from pathlib import Path
@@ -25,6 +26,23 @@ def first_poses(points, model, poses, radius):
         distances = np.linalg.norm(points[:, None, :] - moved[None, :, :], axis=2).min(axis=1)
         first[distances < radius] = i
     return first
+
+
+def write_las(path, quanta, scale=(0.001,) * 3, offset=(0, 0, 0), times=None, classes=None):
+    """LAS 1.2; with times of points it is of format 1."""
+    head = bytearray(227)
+    struct.pack_into("<4s2xH16xBB", head, 0, b"LASF", 0, 1, 2)
+    struct.pack_into("<HIIBHI", head, 94, 227, 227, 0, *((0, 20) if times is None else (1, 28)),
+                     len(quanta))
+    places = np.array(quanta) * scale + offset
+    struct.pack_into("<12d", head, 131, *scale, *offset,
+                     *np.stack([places.max(0), places.min(0)], 1).ravel())
+    with open(path, "wb") as file:
+        file.write(head)
+        for i, q in enumerate(quanta):
+            file.write(struct.pack("<3i3xB4x", *q, 0 if classes is None else classes[i]))
+            if times is not None:
+                file.write(struct.pack("<d", times[i]))
 
 
 class SceneTest(unittest.TestCase):

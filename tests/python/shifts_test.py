@@ -68,33 +68,27 @@ class ShiftTest(SceneTest):
         self.assertIn("the whole path: ", repr(table))
         self.assertIn("conflict 1: ", repr(table.conflicts[0]))
 
-    def test_bodies_and_stations(self):
+    def test_bodies_and_the_report(self):
         body = clearway.Body("one", self.model, self.poses)
-        self.search(query=clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body],
-                                         first_pose=True))
-        of_bodies = clearway.Result(self.folder / "out.h5")
-        labels = clearway.PoseLabels()
-        table = clearway.find_shifts(of_bodies, self.store, None, self.poses, bodies=[body],
-                                     lateral=(-STEP * MOST, STEP * MOST), step=STEP, min_points=1,
-                                     gap=0.2, labels=labels)
-        plain = self.shifts(self.result())
+        self.search("bodies.h5", clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body],
+                                                first_pose=True))
+        options = {"lateral": (-STEP * MOST, STEP * MOST), "step": STEP, "min_points": 1, "gap": 0.2}
+        table = clearway.find_shifts(clearway.Result(self.folder / "bodies.h5"), self.store, None,
+                                     self.poses, bodies=[body], **options)
+        result = self.result()
+        plain = self.shifts(result)
         self.assertEqual([row.shift for row in table.conflicts],
                          [row.shift for row in plain.conflicts])
-
-    def test_report_tells_them(self):
-        result = self.result()
-        table = self.shifts(result)
-        summary = clearway.write_report(result, self.store, self.model, self.poses,
-                                        self.folder / "page.html", shifts=table, min_points=1,
-                                        gap=0.2, overwrite=True)
+        page = self.folder / "page.html"
+        summary = clearway.write_report(result, self.store, self.model, self.poses, page,
+                                        shifts=plain, min_points=1, gap=0.2)
         told = json.loads(summary.facts)["shifts"]
-        self.assertEqual(told["path"]["shift"], table.path.shift)
+        self.assertEqual(told["path"]["shift"], plain.path.shift)
         self.assertEqual([row["shift"] for row in told["list"]],
-                         [row.shift for row in table.conflicts])
+                         [row.shift for row in plain.conflicts])
         with self.assertRaisesRegex(clearway.InputError, "not those of the table of shifts"):
-            clearway.write_report(result, self.store, self.model, self.poses,
-                                  self.folder / "page.html", shifts=table, min_points=10**6,
-                                  overwrite=True)
+            clearway.write_report(result, self.store, self.model, self.poses, page, shifts=plain,
+                                  min_points=10**6, overwrite=True)
 
     def test_what_is_refused(self):
         result = self.result()

@@ -37,7 +37,7 @@ class Smoothing(SceneTest):
 
     def test_the_error_covers_what_the_given_path_touches(self):
         random = np.random.default_rng(4)
-        for _ in range(6):
+        for _ in range(3):
             noise = random.uniform(0, 0.02)
             poses = drive(random, int(random.integers(60, 300)), 0.02, noise)
             path = self.smoothed(poses, random.uniform(0.05, 0.15), step=random.uniform(0.05, 0.3))
