@@ -1,7 +1,5 @@
 #!/usr/bin/python3
-"""Draws the JSON files of `clearway-bench`, tools/certainty.py, tools/check_cost.py and
-tools/measure_peers.py as SVG and PNG, each named as its experiment, with the numbers as Markdown;
-`table` also as `engines`.
+"""Draws the JSON files of tools/experiments.py and tools/certainty.py as SVG and PNG, each named as its experiment, with the numbers as Markdown; `table` also as `engines`.
 
 Reads *.json, and *.json.gz as `gzip` makes them. Other JSON files are left out.
 Needs matplotlib and numpy (Debian: python3-matplotlib).
@@ -39,7 +37,7 @@ def figures_of(record):
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path, help="with JSON files of clearway-bench")
+    parser.add_argument("folder", type=Path, help="with JSON files of experiments")
     parser.add_argument("-o", "--output", type=Path,
                         help="folder of the charts (default: the same)")
     options = parser.parse_args()
@@ -47,7 +45,7 @@ def main():
     records = [read_record(path) for path in files_in(options.folder)]
     records = [record for record in records if record and figures_of(record)]
     if not records:
-        sys.exit(f"{options.folder}: no JSON file of clearway-bench")
+        sys.exit(f"{options.folder}: no JSON file of an experiment")
     output.mkdir(parents=True, exist_ok=True)
     for record in records:
         if not record.cases:

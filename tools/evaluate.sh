@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Builds Clearway, measures the experiments of clearway-bench and tools/certainty.py, and draws their
+# Builds Clearway, measures the experiments of tools/experiments.py and tools/certainty.py, and draws their
 # charts: the whole evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12 or
 # 13). Run again, it goes on where it was stopped; another commit needs another FOLDER, or --force,
 # which removes the outputs of before.
 # Usage: tools/evaluate.sh [--force] [--only NAME,...] [small|full] FOLDER
-# --only: these of the experiments below, peers and certainty, so that a machine that is there for some
+# --only: these of the experiments below and certainty, so that a machine that is there for some
 #   minutes can do a part; the charts are drawn of all that FOLDER has.
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 # Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
-experiments=(table threads grid points accuracy stability scaling share surfaces seen section)
+experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers)
 force=no
 only=
 while :; do
@@ -43,31 +43,21 @@ configure_release -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=ON -DCLEARWAY_CUDA=
 cmake --build build/release --target clearway-bench clearway_peers clearway_python
 
 if [ $force = yes ]; then
-  (cd "$folder" && rm -rf work certainty.json peers.json "${experiments[@]/%/.json}")
+  (cd "$folder" && rm -rf work certainty.json "${experiments[@]/%/.json}")
 fi
-# Seconds after which a case is stopped, which then has failed, and those for all poses of a library.
-limit=6 peer_limit=2
-[ "$size" = small ] || limit=60 peer_limit=20
+# Seconds after which a case is stopped, which then has failed.
+limit=6
+[ "$size" = small ] || limit=60
 # The scenes of an experiment that could take others too.
 declare -A scenes=([seen]=hall,mine [section]=hall)
 wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
   wanted "$experiment" || continue
   printf '\n== %s\n' "$experiment"
-  build/release/tools/clearway-bench "$experiment" -o "$folder/$experiment.json" \
+  tools/experiments.py build/release/tools "$experiment" -o "$folder/$experiment.json" \
     --work "$folder/work" --size "$size" --limit $limit --resume \
     ${scenes[$experiment]:+--scenes "${scenes[$experiment]}"}
 done
-if wanted peers; then
-  printf '\n== peers\n'
-  for scene in hall tunnel plant mine; do
-    [ -e "$folder/work/$scene-$size.h5" ] || continue  # made by table
-    tools/measure_peers.py build/release/tools --scene "$scene" --size "$size" \
-      --env "$folder/work/$scene-$size.h5" --model "$folder/work/$scene-$size/model.ply" \
-      --trajectory "$folder/work/$scene-$size/trajectory.txt" -o "$folder/peers.json" \
-      --limit $peer_limit
-  done
-fi
 if wanted certainty && [ ! -e "$folder/certainty.json" ]; then
   printf '\n== certainty\n'
   PYTHONPATH=build/release/python tools/certainty.py build/release/tools/clearway \

@@ -1,327 +1,280 @@
 #!/usr/bin/python3
-"""Asks two builds of Clearway the same questions, and compares all that they write.
+"""Asks two builds of Clearway what the texts of tests/commands ask, and compares all that they write.
 
-It prints a line for each output that differs, with the first difference, and a summary. An output
-is a file that a command wrote or changed, what it printed on standard output or on standard error,
-or its exit code; with --python also each name of the Python module with its kind, signature and
-docstring. Exit code 1: an output differs, or a command did not end as the table expects.
-
-The questions are in outputs/questions.py, the inputs that they need in outputs/inputs.py, and what
-may differ in outputs/difference.py. h5py and numpy (Debian: python3-h5py) say which dataset of a
-result differs.
+It prints a line for each output that differs, with the first difference, and a summary. An output is
+what a command printed on standard output or on standard error, its exit code, or a file that it wrote
+or changed. Exit code 1: an output differs.
+The driver of the texts is that of the new build; it runs this script in the place of the program, which
+runs the program and keeps its outputs. --data adds real files: each is converted, and described.
+Needs h5py and numpy (Debian: python3-h5py).
 Example: tools/bench/same_outputs.py before/clearway build/release/tools/clearway --data DATA
 """
 
 import argparse
-import json
+import io
 import os
 import re
-import shlex
 import shutil
-import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
-import time
-from concurrent.futures import ThreadPoolExecutor
+import zipfile
 from pathlib import Path
 
-from outputs import inputs, questions
-from outputs.difference import Comparison, Naming, missing_tools
+import h5py
+import numpy
 
-SECONDS = 300  # that a command may take, on a busy machine
-TRIES = 6      # to stop a run between its beginning and its end
-
-
-class Program:
-    """One of the two builds, with the folder in which it answers."""
-
-    def __init__(self, path, folder):
-        self.path, self.folder = Path(path).absolute(), folder
-        self.folder.mkdir(parents=True)
-        self.environment = {**os.environ, "LC_ALL": "C.UTF-8", "TZ": "UTC",
-                            "CUDA_VISIBLE_DEVICES": ""}
-        said = self.run(["--version"])
-        if said.returncode != 0:
-            sys.exit(f"{path}: --version ends with {said.returncode}")
-        self.version = said.stdout.decode().strip()
-        self.naming = Naming(folder, dict.fromkeys([self.path, self.path.resolve()]), self.version)
-
-    def start(self, words, folder=None, **streams):
-        return subprocess.Popen([str(self.path), *words], cwd=folder or self.folder,
-                                env=self.environment, **streams)
-
-    def run(self, words, stdin=None, folder=None):
-        """The finished command; a command that takes too long ends with -9."""
-        with open(self.folder / stdin if stdin else os.devnull, "rb") as given:
-            process = self.start(words, folder, stdin=given, stdout=subprocess.PIPE,
-                                 stderr=subprocess.PIPE)
-            try:
-                out, err = process.communicate(timeout=SECONDS)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                out, err = process.communicate()
-        return subprocess.CompletedProcess(words, process.returncode, out, err)
-
-    def answer(self, question):
-        """All outputs of a question, by their names."""
-        before = self._files()
-        done = self.run(question.words, question.stdin)
-        after = self._files()
-        outputs = {"exit code": str(done.returncode).encode(), "stdout": done.stdout,
-                   "stderr": done.stderr}
-        for name in sorted(after):
-            if before.get(name) != after[name]:
-                outputs[name] = (self.folder / name).read_bytes()
-        for name in before.keys() - after.keys():
-            outputs[name] = b"removed"
-        return outputs
-
-    def _files(self):
-        """Name, and what changes with its contents, of each file in the folder. Links are not followed."""
-        found, start = {}, len(str(self.folder)) + 1
-        waiting = [str(self.folder)]
-        while waiting:
-            for entry in os.scandir(waiting.pop()):
-                if entry.is_dir(follow_symlinks=False):
-                    waiting.append(entry.path)
-                elif not entry.is_symlink():
-                    status = entry.stat()
-                    found[entry.path[start:]] = status.st_mtime_ns, status.st_size, status.st_ino
-        return found
+TEXTS = Path(__file__).resolve().parents[2] / "tests" / "commands"
+# What depends on the clock: what stands for it, and why it may differ.
+CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
+    (rb"\b\d[\d,]*(\.\d+)? (ms|s|min|h)\b", b"TIME", "seconds that a step took"),
+    (rb"\b(count|distribute|partition|confirm) \d+\.\d+", rb"\1 TIME", "seconds of a conversion"),
+    (rb'"(\w*seconds)": ?\{[^{}]*\}', rb'"\1": TIME', "seconds of the steps of a command"),
+    (rb'"(\w*seconds)": ?[\d.e+-]+', rb'"\1": TIME', "seconds that a task took"),
+    (rb'"time": ?"[^"]*"', b'"time": TIME', "when a task of a campaign ended"),
+    (rb'"date": ?"\d{4}-[^"]* UTC"', b'"date": TIME', "when a page was made that got no date"),
+    (rb'"peak_host_bytes": ?\d+', b'"peak_host_bytes": BYTES', "memory at its greatest"),
+    (rb'"bytes_moved": ?\{[^{}]*\}', b'"bytes_moved": BYTES', "as the system counts them"),
+    (rb'"outputs_id": ?"\w+"', b'"outputs_id": HASH', "hash of commands that name the folder"),
+    (rb'"modified": ?-?\d+', b'"modified": TIME', "time of an input file"),
+    (rb"tests: [^\n]*", b"tests: COUNTS", "threads find points of a profile in any order"),
+)]
+# Outputs that depend on it: what a command prints, and these files. All others have to be equal.
+TELLS_TIME = re.compile(
+    r"(^|/)(stdout|stderr|log\.txt|plan\.json|run\.json|state\.json)$|/runs/.*/report\.html$")
+PRINTED = ("stdout.txt", "stderr.txt")  # files of the driver
 
 
-class Question:
-    """A line of the table."""
-
-    def __init__(self, group, number, line):
-        text, _, code = line.partition(" => ")
-        self.code = {"": 0, "any": None}.get(code) if code in ("", "any") else int(code)
-        words = [word.replace("@", f"{group.replace(' ', '_')}_{number}") for word in shlex.split(text)]
-        self.stdin = words[words.index("<") + 1] if "<" in words else None
-        self.words = words[:words.index("<")] if "<" in words else words
-        self.group = group
-
-    def __str__(self):
-        return shlex.join(self.words)
-
-    def makes(self):
-        """The files and folders that questions after it may read."""
-        made = [after for word, after in zip(self.words, self.words[1:]) if word == "-o"]
-        return made + ([self.words[2]] if self.words[:2] == ["campaign", "run"] else [])
-
-    def counts_vary(self):
-        """Whether the order of the threads changes how much is tested, which is printed."""
-        return "--profile" in self.words and "--threads 1" not in str(self)
-
-    def reads(self, made):
-        return any(word == made or word.startswith(made + "/") for word in [*self.words, self.stdin or ""])
+# --- in the place of the program -------------------------------------------------------------------
 
 
-def chosen_questions(data, pattern):
-    """The questions that the pattern finds, and those whose outputs they need."""
-    asked = [Question(group, number, line) for group, lines in questions.groups(data).items()
-             for number, line in enumerate(lines)]
-    wanted = []
-    for question in reversed(asked):
-        if question.group in questions.ALWAYS or not pattern or \
-                re.search(pattern, f"{question.group}: {question}") or \
-                any(later.reads(made) for later in wanted for made in question.makes()):
-            wanted.append(question)
-    return wanted[::-1]
+def files(folder):
+    """Name, and what changes with its contents, of each file in the folder. Links are not followed."""
+    found = {}
+    for place, _, names in os.walk(folder):
+        for name in names:
+            path = Path(place, name)
+            if path.is_file() and not path.is_symlink() and str(path.relative_to(folder)) not in PRINTED:
+                status = path.stat()
+                found[str(path.relative_to(folder))] = status.st_mtime_ns, status.st_size, status.st_ino
+    return found
 
 
-class Tally:
-    """Counts outputs and prints those that differ."""
-
-    def __init__(self, comparison):
-        self.comparison = comparison
-        self.compared = self.different = self.questions = 0
-        self.problems = []
-
-    def compare(self, question, name, old, new, several_threads=False):
-        self.compared += 1
-        if old is None or new is None:
-            where = "is new" if old is None else "is missing"
-        else:
-            where = self.comparison.difference(name, old, new, several_threads)
-        if where:
-            self.different += 1
-            print(f"{name}: {where} [{question}]", flush=True)
-
-    def compare_answers(self, question, old, new):
-        """Empty texts are not counted."""
-        self.questions += 1
-        for name in dict.fromkeys([*old, *new]):
-            if name in ("stdout", "stderr") and not old[name] and not new[name]:
-                continue
-            self.compare(question, name, old.get(name), new.get(name),
-                         question.counts_vary())
-
-    def problem(self, text):
-        self.problems.append(text)
-        print(text, flush=True)
+def keep_outputs(program, records):
+    """Runs the program with the words of this script, and keeps its outputs in a folder of their own."""
+    here = Path.cwd()
+    before = files(here)
+    more = os.environ["CLEARWAY_MORE"].split() if sys.argv[1:2] == ["run"] else []
+    done = subprocess.run([program, *sys.argv[1:], *more], capture_output=True)
+    record = Path(records) / f"{len(os.listdir(records)):06}"
+    record.mkdir()
+    outputs = {"words": "\n".join(sys.argv[1:]).encode(), "folder": str(here).encode(),
+               "exit code": str(done.returncode).encode(), "stdout": done.stdout, "stderr": done.stderr}
+    after = files(here)
+    for name in after:
+        if before.get(name) != after[name]:
+            outputs["wrote/" + name] = (here / name).read_bytes()
+    for name in before.keys() - after.keys():
+        outputs["wrote/" + name] = b"removed"
+    for name, data in outputs.items():
+        (record / name).parent.mkdir(parents=True, exist_ok=True)
+        (record / name).write_bytes(data)
+    sys.stdout.buffer.write(done.stdout)
+    sys.stderr.buffer.write(done.stderr)
+    return done.returncode
 
 
-def ask(question, old, new, tally, pool):
-    """One question to both programs at the same time."""
-    answers = list(pool.map(lambda program: program.answer(question), (old, new)))
-    code = int(answers[0]["exit code"])
-    if question.code is not None and code != question.code:
-        tally.problem(f"{question}\n    ends with {code}, the table expects {question.code}: " +
-                      answers[0]["stderr"].decode(errors="replace").strip()[-300:])
-    tally.compare_answers(question, *answers)
+# --- what differs ----------------------------------------------------------------------------------
 
 
-# --- commands that one program begins and the other one ends ---------------------------------
+def neutral(name, data, words):
+    """Without what names the program, its folder and version, or depends on the clock."""
+    for word, stands_for in words:
+        data = data.replace(word, stands_for)
+    for pattern, word in CLOCK if TELLS_TIME.search(name) else ():
+        data = pattern.sub(word, data)
+    return data
 
 
-def stop_midway(program, words, journal, kill):
-    """Stops a command once its journal has grown; whether that was before its end."""
-    process = program.start(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    sizes, end = set(), time.monotonic() + SECONDS
-    while process.poll() is None and len(sizes) < 4 and time.monotonic() < end:
-        try:
-            sizes.add(journal.stat().st_size)
-        except FileNotFoundError:
-            pass
-        time.sleep(0.0005)
-    process.send_signal(kill)
-    process.wait()
-    return journal.exists()
-
-
-def look_at_journal(begins, ends, journal, tally):
-    """Both programs look at the same journal, and have to say the same."""
-    for command in ("info", "verify"):
-        said = [program.run([command, journal, "--json"], folder=begins.folder)
-                for program in (begins, ends)]
-        tally.compare(shlex.join(said[0].args), "stdout", *(one.stdout for one in said))
-
-
-def resumed(case, name, begins, ends, kill, tally):
-    """What `ends` makes of a command in which `begins` was stopped; None where it was too fast."""
-    output = case.output.format(name=name)
-    words, go_on = (shlex.split(text.format(name=name)) for text in (case.begin, case.go_on))
-    for _ in range(TRIES):
-        if case.prepare:
-            begins.run(shlex.split(case.prepare.format(name=name)))
-        if stop_midway(begins, words, begins.folder / f"{output}.journal", kill):
-            break
-        shutil.rmtree(begins.folder / name, ignore_errors=True)
-        (begins.folder / output).unlink(missing_ok=True)
-    else:
-        tally.problem(f"{shlex.join(words)}\n    ended before it could be stopped")
+def difference(name, old, new, words):
+    """Where an output first differs; None where both say the same. words: of the two programs."""
+    if old is None or new is None:
+        return "is new" if old is None else "is missing"
+    old, new = (neutral(name, data, of) for data, of in zip((old, new), words))
+    if old == new:
         return None
-    look_at_journal(begins, ends, f"{output}.journal", tally)
-    done = ends.run(go_on, folder=begins.folder)
-    log = (begins.folder / output).with_name("log.txt")
-    said = done.stderr + (log.read_bytes() if log.exists() else b"")
-    if not re.search(rb"resumes with [1-9]", said):
-        tally.problem(f"{shlex.join(words)}\n    nothing of the interrupted run was used: "
-                      + said.decode(errors="replace")[-300:])
-    return (begins.folder / output).read_bytes() if (begins.folder / output).exists() else b""
+    read = PARTS.get(name.rpartition(".")[2])
+    try:
+        parts = [read(data) for data in (old, new)] if read else [{}, {}]
+    except Exception as error:  # a damaged output is a difference like any other
+        return f"{first_difference(old, new)} (not read: {error})"
+    for part in dict.fromkeys([*parts[0], *parts[1]]):
+        one, other = (neutral(name, of[part], own) if isinstance(of.get(part), bytes) else of.get(part)
+                      for of, own in zip(parts, words))
+        if type(one) is not type(other):
+            return f"{part}: {one!r}, now {other!r}"
+        if isinstance(one, bytes) and one != other:
+            return f"{part}: {first_difference(one, other)}"
+        if isinstance(one, numpy.ndarray) and (one.dtype, one.shape, one.tobytes()) != (
+                other.dtype, other.shape, other.tobytes()):
+            return f"{part}: {one.dtype} {one.shape}, now {other.dtype} {other.shape}: {first_value(one, other)}"
+    if read is zipped:  # its members are compressed, in which the version stands
+        return None
+    return first_difference(old, new)
 
 
-def ask_interrupted(old, new, tally, pool, pattern):
-    """Compares what was interrupted and resumed, each way, with what nobody interrupted."""
-    for number, (title, case) in enumerate(questions.INTERRUPTED.items()):
-        if pattern and not re.search(pattern, f"interrupted: {case.begin}"):
+def first_difference(old, new):
+    """The first line, or the first byte of binary data, that differs."""
+    at = next((i for i, (a, b) in enumerate(zip(old, new)) if a != b), min(len(old), len(new)))
+    if b"\0" in old:
+        return f"byte {at} of {len(old)} and {len(new)}"
+    start = max(old.rfind(b"\n", 0, at) + 1, at - 30)
+    shown = [repr(data[start:at + 60].split(b"\n")[0].decode(errors="replace")) for data in (old, new)]
+    return f"line {old.count(10, 0, at) + 1}: {shown[0]}, now {shown[1]}"
+
+
+def first_value(old, new):
+    """The first value that differs, by its bits, so that a NaN is equal to itself."""
+    pairs = enumerate(zip(old.reshape(-1), new.reshape(-1)))
+    return next((f"[{at}] is {a}, now {b}" for at, (a, b) in pairs if a.tobytes() != b.tobytes()), "")
+
+
+def hdf5(data):
+    """Attributes and datasets by their paths."""
+    parts = {}
+    with h5py.File(io.BytesIO(data), "r") as file:
+        def add(name, item):
+            for attribute in sorted(item.attrs):
+                parts[f"/{name}@{attribute}"] = numpy.asarray(item.attrs[attribute]).astype(
+                    bytes if isinstance(item.attrs[attribute], str) else None)
+            if isinstance(item, h5py.Dataset):
+                parts[f"/{name}"] = values(item)
+        add("", file)
+        file.visititems(add)
+    return parts
+
+
+def values(dataset):
+    """The values; of a dataset that only Clearway unpacks, the bytes as they are stored."""
+    try:
+        found = numpy.asarray(dataset[()])
+        return found.astype(bytes) if found.dtype == object else found
+    except OSError:
+        chunks = [dataset.id.get_chunk_info(i).chunk_offset for i in range(dataset.id.get_num_chunks())]
+        return b"".join(dataset.id.read_direct_chunk(offset)[1] for offset in chunks)
+
+
+def zipped(data):
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        return {f"{info.filename} ({info.date_time})": archive.read(info) for info in archive.infolist()}
+
+
+def sqlite(data):
+    with sqlite3.connect(":memory:") as database:
+        database.deserialize(data)
+        tables = database.execute("select name from sqlite_master where type = 'table' order by name")
+        return {table: "\n".join(map(repr, database.execute(f'select * from "{table}"'))).encode()  # noqa: S608
+                for (table,) in tables.fetchall()}
+
+
+PARTS = {"h5": hdf5, "gpkg": sqlite, "bcf": zipped, "bcfzip": zipped}
+
+
+# --- the whole -------------------------------------------------------------------------------------
+
+
+def ask_real_files(data):
+    """What is asked of each file of a folder of real files, in a folder of its own."""
+    for path in sorted(path for path in data.rglob("*") if path.is_file()):
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / path.name).symlink_to(path)
+            for words in (["info", path.name, "--json"], ["convert", path.name, "-o", "site.h5"],
+                          ["info", "site.h5", "--json"]):
+                subprocess.run([__file__, *words], cwd=folder, capture_output=True,
+                               stdin=subprocess.DEVNULL)
+
+
+def answers(program, more, options, work):
+    """Asks a program everything, its runs with `more` options, and returns its records by what was asked:
+    {title: folders}."""
+    records = {}
+    asked = [(path.stem, [options.driver, path]) for path in sorted(TEXTS.glob("*.test"))]
+    if options.data:
+        asked += [(folder.name, None) for folder in sorted(options.data.iterdir()) if folder.is_dir()]
+    for title, command in asked:
+        if options.only and not re.search(options.only, title):
             continue
-        for line in filter(None, (case.prepare, case.begin)):
-            whole = Question("interrupted", number, line.format(name=f"whole_{number}"))
-            ask(whole, old, new, tally, pool)
-        kill = (signal.SIGKILL, signal.SIGINT)[number % 2]
-        cut = case.output.format(name=f"cut_{number}")
-        for begins, ends, way in ((old, new, "old, then new"), (new, old, "new, then old")):
-            tally.questions += 1
-            found = resumed(case, f"cut_{number}", begins, ends, kill, tally)
-            expected = begins.folder / case.output.format(name=f"whole_{number}")
-            if found is not None and expected.exists():
-                tally.compare(f"interrupted: {title} ({way})", cut, expected.read_bytes(), found)
+        folder = work / title
+        folder.mkdir(parents=True)
+        os.environ.update(CLEARWAY_PROGRAM=__file__, CLEARWAY_RECORDED=str(program.resolve()),
+                          CLEARWAY_RECORDS=str(folder), CLEARWAY_MORE=more, LC_ALL="C.UTF-8", TZ="UTC")
+        if not options.more:
+            os.environ["CUDA_VISIBLE_DEVICES"] = ""
+        if command:
+            done = subprocess.run(command, capture_output=True, text=True)
+            if done.returncode != 0:
+                print(f"{program}: does not answer {title}.test as it expects", flush=True)
+        else:
+            ask_real_files(options.data / title)
+        records[title] = sorted(folder.iterdir())
+    return records
 
 
-# --- the names of the Python module --------------------------------------------------------------
+def outputs_of(record):
+    return {str(path.relative_to(record)): path.read_bytes() for path in record.rglob("*") if path.is_file()}
 
 
-def python_names(folder):
-    """Each name of the module `clearway` in the folder, and what a user sees of it."""
-    script = Path(__file__).parent / "outputs/python_names.py"
-    done = subprocess.run([sys.executable, script], env={**os.environ, "PYTHONPATH": str(folder)},
-                          capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"{folder}: the module cannot be loaded: {done.stderr.strip()[-300:]}")
-    return json.loads(done.stdout)
-
-
-def compare_python(folders, tally):
-    old, new = map(python_names, folders)
-    tally.questions += 1
-    for name in dict.fromkeys([*old, *new]):
-        tally.compare("Python", name, *(names[name].encode() if name in names else None for names in (old, new)))
-
-
-# --- the whole -----------------------------------------------------------------------------------
-
-
-def ask_all(old, new, options, tally):
-    derived = False
-    with ThreadPoolExecutor(2) as pool:
-        for question in chosen_questions(options.data, options.only):
-            if question.group != "scenes" and not derived:
-                for program in (old, new):
-                    inputs.derive(program.folder)
-                    if options.data:
-                        (program.folder / "data").symlink_to(options.data)
-                derived = True
-            ask(question, old, new, tally, pool)
-        ask_interrupted(old, new, tally, pool, options.only)
-
-
-def parsed():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("old", type=Path, metavar="OLD_CLEARWAY", help="the program whose outputs are right")
-    parser.add_argument("new", type=Path, metavar="NEW_CLEARWAY", help="the program to check")
-    parser.add_argument("--work", type=Path, metavar="DIR",
-                        help="folder for the files, made if missing (default: a temporary one)")
-    parser.add_argument("--data", type=Path, metavar="FOLDER",
-                        help="real files to ask about too: its folders formats, malformed, trajectories and street")
-    parser.add_argument("--only", metavar="PATTERN",
-                        help="regular expression: only the questions of which `GROUP: COMMAND` matches")
-    parser.add_argument("--python", type=Path, nargs=2, metavar=("OLD_FOLDER", "NEW_FOLDER"),
-                        help="folders that hold the Python modules of both builds, whose names are compared too")
-    parser.add_argument("--keep", action="store_true", help="leave the files in the folder")
-    options = parser.parse_args()
-    options.data = options.data and options.data.resolve()
-    return options
+def compare(old, new, versions, results_alone):
+    """Counts outputs of two records, and prints those that differ."""
+    found = [outputs_of(record) for record in (old, new)]
+    words = [[(one.pop("folder"), b"FOLDER"), (version, b"VERSION")] for one, version in zip(found, versions)]
+    asked = found[0]["words"].decode().replace("\n", " ")
+    different = 0
+    for name in sorted({*found[0], *found[1]}):
+        if results_alone and not name.endswith(".h5"):
+            continue
+        where = difference(name, *(one.get(name) for one in found), words)
+        if where:
+            different += 1
+            print(f"{name}: {where} [{asked}]", flush=True)
+    return len(found[0]), different
 
 
 def main():
-    options = parsed()
-    if options.work:
-        options.work.mkdir(parents=True, exist_ok=True)
-    work = Path(tempfile.mkdtemp(prefix="same_outputs_", dir=options.work)).resolve()
-    started = time.monotonic()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("old", type=Path, metavar="OLD_CLEARWAY", help="the program whose outputs are right")
+    parser.add_argument("new", type=Path, metavar="NEW_CLEARWAY", help="the program to check")
+    parser.add_argument("--driver", type=Path, help="commands_tests (default: that of the build of NEW_CLEARWAY)")
+    parser.add_argument("--data", type=Path, metavar="FOLDER", help="folders of real files to ask about too")
+    parser.add_argument("--more", default="", metavar="OPTIONS",
+                        help="options of each run of NEW_CLEARWAY, as '--device cuda'; results alone are compared")
+    parser.add_argument("--only", metavar="PATTERN", help="regular expression of texts and folders to ask of")
+    parser.add_argument("--keep", type=Path, metavar="DIR", help="an empty folder for all outputs, which stay")
+    options = parser.parse_args()
+    options.driver = options.driver or options.new.resolve().parents[1] / "tests" / "tools" / "commands_tests"
+    work = options.keep or Path(tempfile.mkdtemp(prefix="same_outputs_"))
     try:
-        # Names of one length, so that a text that is padded or cut to a width is the same.
-        old, new = Program(options.old, work / "old"), Program(options.new, work / "new")
-        if missing_tools():
-            print(missing_tools())
-        tally = Tally(Comparison(old.naming, new.naming))
-        if options.python:
-            compare_python(options.python, tally)
-        ask_all(old, new, options, tally)
+        old = answers(options.old, "", options, work / "old")
+        new = answers(options.new, options.more, options, work / "new")
+        versions = [subprocess.run([program, "--version"], capture_output=True, check=True).stdout.strip()
+                    for program in (options.old.resolve(), options.new.resolve())]
+        compared = different = asked = 0
+        for title, records in old.items():
+            if len(records) != len(new[title]):
+                different += 1
+                print(f"{title}: {len(records)} commands, now {len(new[title])}")
+            for pair in zip(records, new[title]):
+                outputs, differ = compare(*pair, versions, options.more)
+                compared, different, asked = compared + outputs, different + differ, asked + 1
     finally:
-        if options.keep:
-            print(f"the files are in {work}")
-        else:
-            shutil.rmtree(work, ignore_errors=True)
-    print(f"{tally.compared} outputs of {tally.questions} questions compared, {tally.different} differ"
-          f" ({time.monotonic() - started:.0f} s)")
-    if tally.problems:
-        print(f"{len(tally.problems)} questions were not answered as the table expects")
-    return 1 if tally.different or tally.problems else 0
+        if not options.keep:
+            shutil.rmtree(work)
+    print(f"{compared} outputs of {asked} commands compared, {different} differ")
+    return 1 if different else 0
 
 
 if __name__ == "__main__":
+    if "CLEARWAY_RECORDED" in os.environ:
+        sys.exit(keep_outputs(os.environ["CLEARWAY_RECORDED"], os.environ["CLEARWAY_RECORDS"]))
     sys.exit(main())

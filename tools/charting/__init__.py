@@ -1,2 +1,2 @@
-"""Charts of `clearway-bench`: a module a figure, and what they share (record, style, sheet, plot,
+"""Charts of experiments: a module a figure, and what they share (record, style, sheet, plot,
 labels)."""

@@ -1,4 +1,4 @@
-"""What `clearway-bench` wrote."""
+"""What tools/experiments.py wrote."""
 
 import gzip
 import json

@@ -1,4 +1,4 @@
-"""What a file of figures says of the machine and the program, as clearway-bench writes it."""
+"""What a file of figures says of the machine and the program."""
 
 import os
 import platform
@@ -16,9 +16,11 @@ def processor():
 def header(experiment, program, size, gpus=()):
     version = subprocess.run([program, "--version"], capture_output=True, text=True,
                              check=True).stdout.strip()
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "describe", "--always", "--dirty",
+                             "--abbrev=12", "--exclude=*"], capture_output=True, text=True).stdout.strip()
     return {"experiment": experiment, "size": size,
             "machine": {"processor": processor(),
                         "cores": len(os.sched_getaffinity(0)),
                         "memory_bytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE"),
                         "gpus": list(gpus), "system": platform.freedesktop_os_release()["PRETTY_NAME"]},
-            "clearway": {"version": version}, "parameters": {}}
+            "clearway": {"version": version, "commit": commit or "unknown"}, "parameters": {}}

@@ -8,14 +8,6 @@
 
 namespace clearway::bench {
 
-// The options that set the engines, of `clearway-bench search`.
-inline constexpr const char* kToleranceOption = "--tolerance";
-inline constexpr const char* kFieldVoxelOption = "--field-voxel";
-inline constexpr const char* kGridCellOption = "--grid-cell";
-inline constexpr const char* kPrecisionOption = "--precision";
-inline constexpr const char* kSettingOptions[] = {kToleranceOption, kFieldVoxelOption,
-                                                  kGridCellOption, kPrecisionOption};
-
 /// A search with engines that are set as no search of Clearway sets them. Within a tolerance or in
 /// single precision its result is not exact, which the file does not say.
 struct SetEngines {

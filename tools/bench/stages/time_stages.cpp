@@ -1,14 +1,20 @@
 #include "bench/stages/time_stages.hpp"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "bench/measure/page_cache.hpp"
+#include "clearway/error.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
+#include "io/files/file.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/query_trees.hpp"
 #include "stream/plan.hpp"
@@ -88,6 +94,15 @@ nlohmann::ordered_json time_device(const StoreReader& store, const SweepFilter& 
       {"compute_seconds", compute}, {"points_per_second", static_cast<double>(points) / compute}};
 }
 #endif
+
+/// Drops a file from the page cache of the system, so that the next reader waits for the disk.
+void drop_from_page_cache(const std::filesystem::path& path) {
+  const File file = File::open_for_reading(path);
+  int error = ::fsync(file.descriptor()) == 0 ? 0 : errno;  // unwritten pages would stay
+  if (error == 0) error = ::posix_fadvise(file.descriptor(), 0, 0, POSIX_FADV_DONTNEED);
+  if (error == 0) return;
+  throw ResourceError(path.string() + ": cannot drop from the page cache: " + std::strerror(error));
+}
 
 }  // namespace
 

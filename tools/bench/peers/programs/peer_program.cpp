@@ -13,7 +13,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <iostream>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
@@ -30,12 +29,10 @@ namespace clearway::bench {
 namespace {
 
 struct Arguments {
-  std::filesystem::path environment, model, trajectory, ids;
+  std::filesystem::path environment, model, trajectory;
   PeerOptions options;
   double limit = 60;
   int repetitions = 3;
-  std::size_t every = 0;
-  bool wait = false;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -130,25 +127,6 @@ nlohmann::json compare(const Marks& marks, const Points& points,
           {"misses", misses}};
 }
 
-void write_ids(const std::filesystem::path& path, const Marks& marks, const Points& points) {
-  std::vector<std::uint64_t> ids;
-  for (std::size_t i = 0; i < points.sources.size(); ++i) {
-    if (marks.contains(i)) ids.push_back(points.sources[i]);
-  }
-  std::sort(ids.begin(), ids.end());
-  std::ofstream out(path, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(ids.data()),
-            static_cast<std::streamsize>(ids.size() * sizeof(ids[0])));
-  if (!out.flush()) throw std::runtime_error(path.string() + ": cannot write");
-}
-
-/// Says that the search is prepared, and waits for a line from the caller.
-void wait_for_turn() {
-  std::fprintf(stderr, "prepared\n");
-  std::string line;
-  if (!std::getline(std::cin, line)) throw std::runtime_error("--wait: no line came");
-}
-
 nlohmann::json run(const Arguments& arguments) {
   const StoreReader store(arguments.environment);
   const Points points = points_of(store);
@@ -156,20 +134,13 @@ nlohmann::json run(const Arguments& arguments) {
       arguments.model, {.spacing = arguments.options.radius / 4});  // as in clearway run
   const std::vector<Pose> all = read_trajectory(arguments.trajectory, {});
 
-  if (arguments.every > all.size()) {
-    throw std::runtime_error("--every-pose " + std::to_string(arguments.every) +
-                             ": the trajectory has " + std::to_string(all.size()) + " poses");
-  }
-
   const double before = resident_bytes();
-  auto start = Clock::now();
+  const auto start = Clock::now();
   const std::unique_ptr<Peer> peer = make_peer(points.positions, arguments.options);
   const double prepare = seconds_since(start);
-  if (arguments.wait) wait_for_turn();
   const int threads = arguments.options.threads;
-  const std::size_t every = arguments.every > 0 ? arguments.every
-                                                : poses_within(arguments.limit, *peer, all, model,
-                                                               points.positions.size(), threads);
+  const std::size_t every =
+      poses_within(arguments.limit, *peer, all, model, points.positions.size(), threads);
   const std::vector<Pose> poses = every_nth(all, every);
   std::vector<double> seconds;
   Marks marks(points.positions.size());
@@ -183,7 +154,6 @@ nlohmann::json run(const Arguments& arguments) {
   const SessionAnswer exact =
       session.search({{model}, poses, {.radius = arguments.options.radius}});
   nlohmann::json out = compare(marks, points, exact.collisions().source);
-  if (!arguments.ids.empty()) write_ids(arguments.ids, marks, points);
   std::vector<double> sorted = seconds;
   std::sort(sorted.begin(), sorted.end());
   out["peer"] = peer->about();
@@ -218,13 +188,8 @@ int run_program(int argc, char** argv) {
   app.add_option("--limit", arguments.limit,
                  "Seconds of a search; where all poses take longer, every n-th is searched")
       ->capture_default_str();
-  app.add_option("--every-pose", arguments.every, "Search every n-th pose (default: by --limit)");
   app.add_option("--repetitions", arguments.repetitions, "Searches; the median counts")
       ->capture_default_str();
-  app.add_flag("--wait", arguments.wait,
-               "Say on standard error that the search is prepared, and wait for a line");
-  app.add_option("--ids", arguments.ids,
-                 "File of the source indices that were found, 8 bytes each");
   CLI11_PARSE(app, argc, argv);
   std::printf("%s\n", run(arguments).dump(2).c_str());
   return 0;

@@ -1,9 +1,11 @@
 // What share of a scene a search touches, and what touching more than that would cost.
+#include "bench/stages/share.hpp"
+
 #include <algorithm>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "bench/experiments/bench.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/util/stopwatch.hpp"
@@ -18,6 +20,8 @@
 
 namespace clearway::bench {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 /// What a search is made to do although it need not.
 struct Forced {
@@ -61,40 +65,30 @@ class CountingKind final : public CpuSweepKindOf<Vec3> {
 
 class Share {
  public:
-  Share(Bench& bench, const std::string& scene)
-      : bench_(bench),
-        scene_(scene),
-        files_(bench.scene(scene)),
-        query_(read_model(files_.model, {.radius = kMetres}),
-               read_trajectory(files_.trajectory, {}), {.radius = kMetres}),
+  explicit Share(const ShareOptions& asked)
+      : asked_(asked),
+        query_(read_model(asked.model, {.radius = asked.radius}),
+               read_trajectory(asked.trajectory, {}), {.radius = asked.radius}),
         model_hash_(hash_of_model(query_.model)) {
-    options_.threads = threads_or_all(0);
+    options_.threads = threads_or_all(asked.threads);
     options_.device = Device::kCpu;
     options_.engine = Engine::kSweep;
   }
 
-  void measure() {
-    keep("as it is", [&] { return repeated({}); });
-    keep("all cells", [&] { return repeated({.all_cells = true}); });
-    keep("whole field", [&] { return repeated({.whole_field = true}); });
-    keep("poses one by one", [&] { return one_by_one(); });
-    if (!bench_.cuda()) return;
-    bench_.measure(scene_ + "/GPU", {{"scene", scene_}, {"way", "GPU"}}, files_,
-                   bench_.engine("sweep cuda").options);
+  Json measured() {
+    return {{"as it is", repeated({})},
+            {"all cells", repeated({.all_cells = true})},
+            {"whole field", repeated({.whole_field = true})},
+            {"poses one by one", one_by_one()}};
   }
 
  private:
-  static constexpr double kMetres = 0.1;  // kRadius
   static constexpr std::size_t kSinglePoses = 64;
-
-  void keep(const std::string& way, const std::function<Json()>& findings) {
-    bench_.keep(scene_ + "/" + way, {{"scene", scene_}, {"way", way}}, findings);
-  }
 
   /// The search that takes the median time.
   Json repeated(Forced forced) {
     std::vector<Json> found;
-    for (int i = 0; i < bench_.options().repetitions; ++i) found.push_back(search(query_, forced));
+    for (int i = 0; i < asked_.repetitions; ++i) found.push_back(search(query_, forced));
     std::ranges::sort(found, {}, [](const Json& one) { return one["seconds"].get<double>(); });
     return found[found.size() / 2];
   }
@@ -106,7 +100,7 @@ class Share {
     const std::size_t step = std::max<std::size_t>(1, query_.poses.size() / kSinglePoses);
     std::vector<double> seconds;
     for (std::size_t i = 0; i < query_.poses.size(); i += step) {
-      const Query one(query_.model, {query_.poses[i]}, {.radius = kMetres});
+      const Query one(query_.model, {query_.poses[i]}, {.radius = asked_.radius});
       const double taken = search(one, {}, &kept)["seconds"];
       if (i > 0) seconds.push_back(taken);  // the first one makes the field
     }
@@ -119,7 +113,7 @@ class Share {
 
   /// One search, of a store that nothing has been read from yet.
   Json search(const Query& query, Forced forced, KeptModels* kept = nullptr) {
-    const StoreReader store(files_.store);
+    const StoreReader store(asked_.environment);
     SearchReport report;
     const MessageCallback silent;
     const MessageLog log(silent, report.warnings);
@@ -150,7 +144,7 @@ class Share {
             {"cells", store.cells().size()},
             {"cells_read", store.cells_touched()},
             {"blocks", store.blocks().size()},
-            {"bytes", std::filesystem::file_size(files_.store)},
+            {"bytes", std::filesystem::file_size(asked_.environment)},
             {"bytes_read", store.bytes_read().coordinates},
             {"box_tests", tests.node_tests},
             {"point_tests", tests.point_tests},
@@ -159,9 +153,7 @@ class Share {
             {"bricks_made", kind.field().made_bricks()}};
   }
 
-  Bench& bench_;
-  std::string scene_;
-  SceneFiles files_;
+  ShareOptions asked_;
   Query query_;
   std::uint64_t model_hash_;
   SearchOptions options_;
@@ -169,8 +161,6 @@ class Share {
 
 }  // namespace
 
-void bench_share(Bench& bench) {
-  for (const std::string& scene : bench.options().scenes) Share(bench, scene).measure();
-}
+nlohmann::ordered_json measure_shares(const ShareOptions& options) { return Share(options).measured(); }
 
 }  // namespace clearway::bench

@@ -1,1 +1,0 @@
-"""What tools/picture.py reads, and the image of points that it draws into."""
