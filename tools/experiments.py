@@ -10,6 +10,7 @@ Example: tools/experiments.py build/release/tools table -o table.json --work /tm
 
 import argparse
 import fcntl
+import hashlib
 import json
 import os
 import re
@@ -116,6 +117,8 @@ class Bench:
         self.wrong = []
         self.lock_work()
         record = header(experiment, options.programs / "clearway", self.size, gpus)
+        program = (options.programs / "clearway").read_bytes()
+        record["clearway"]["program"] = hashlib.sha256(program).hexdigest()[:12]
         record["parameters"] = {
             "device": self.here, "scenes": options.scenes, **{
                 name: getattr(options, name) for name in ("repetitions", "memory", "device_memory", "limit")},
@@ -125,6 +128,10 @@ class Bench:
     def some(self, values):
         """All values, or of many the first, the middle and the last where the size is smoke."""
         return values if self.size != "smoke" else [values[i] for i in sorted({0, len(values) // 2, len(values) - 1})]
+
+    def slow(self, values):
+        """All values, or none where the size is smoke."""
+        return values if self.size != "smoke" else []
 
     def lock_work(self):
         self.work.mkdir(parents=True, exist_ok=True)
@@ -144,17 +151,18 @@ class Bench:
             earlier = json.loads(path.read_text())
             scenes = record["parameters"]["scenes"] = list(dict.fromkeys(
                 earlier["parameters"]["scenes"] + record["parameters"]["scenes"]))
-            same = {**earlier, "parameters": {**earlier["parameters"], "scenes": scenes,
-                                              "limit": self.options.limit}, "cases": []}
+            same = {**earlier, "cases": [],
+                    "parameters": {**earlier["parameters"], "scenes": scenes, "limit": self.options.limit},
+                    "clearway": {**earlier["clearway"], "commit": record["clearway"]["commit"]}}
             for name in self.record:
                 if same.get(name) != self.record[name]:
                     sys.exit(f"{path}: differs in {name}: {same.get(name)} in the file, "
                              f"{self.record[name]} now; --force replaces it")
             self.record["cases"] = earlier["cases"]
-        made_by = self.work / "made-by.json"
-        if made_by.exists() and json.loads(made_by.read_text()) != record["clearway"]:
-            sys.exit(f"{self.work}: made by {made_by.read_text()}; take another --work, or remove the folder")
-        made_by.write_text(json.dumps(record["clearway"]))
+        made_by = self.work / "made-by.txt"
+        if made_by.exists() and made_by.read_text() != record["clearway"]["program"]:
+            sys.exit(f"{self.work}: made by another program; take another --work, or remove the folder")
+        made_by.write_text(record["clearway"]["program"])
 
     # Programs
 
@@ -436,7 +444,7 @@ def accuracy(bench):
         measure("exact", engine, "", exact=True)
     measure("float", single, "")
     for name, far in (("UTM", (450_000, 5_400_000)), ("10,000 km", (10_000_000, 10_000_000))):
-        for engine in (bench.engine("kdtree cpu"), fast, forward, single):
+        for engine in (bench.engine("kdtree cpu"), fast, forward, *bench.slow([single])):
             measure(("exact" if engine.exact else "float") + ", far origin", engine, name,
                     lambda: bench.shifted(hall, *far))
     for value in bench.some(("1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.05")):
@@ -477,7 +485,8 @@ def stability(bench):
     for engine in (tree, fast, forward, single):
         measure("ulps", RADIUS, engine, boundary, exact=engine.exact,
                 judge=lambda result: variants.decided_at_boundary(result, steps))
-    for far, engine in product(bench.some((0.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7)), (tree, fast, forward, single)):
+    for far, engine in product(bench.some((0.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7)),
+                               (tree, fast, forward, *bench.slow([single]))):
         measure("origin", far, engine, lambda: bench.shifted(hall, far, far) if far else hall,
                 judge=against_truth, exact=engine.exact and far == 0)
     sparse(bench, fast, forward)

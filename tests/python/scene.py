@@ -3,6 +3,7 @@
 import shutil
 import struct
 import tempfile
+import threading
 import unittest
 from pathlib import Path
 
@@ -26,6 +27,15 @@ def first_poses(points, model, poses, radius):
         distances = np.linalg.norm(points[:, None, :] - moved[None, :, :], axis=2).min(axis=1)
         first[distances < radius] = i
     return first
+
+
+def run_together(calls):
+    """Each call in a thread of its own, until all have ended."""
+    threads = [threading.Thread(target=call) for call in calls]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
 
 
 def write_las(path, quanta, scale=(0.001,) * 3, offset=(0, 0, 0), times=None, classes=None):

@@ -10,7 +10,7 @@ import unittest
 
 import clearway
 import numpy as np
-from scene import RADIUS, SceneTest
+from scene import RADIUS, SceneTest, run_together
 
 
 class Sessions(SceneTest):
@@ -263,11 +263,7 @@ class Threads(Sessions):
             order = [*range(begin, 24), *range(begin)]
             wrong.extend(i for i in order if ask(queries[i]) != expected[i])
 
-        threads = [threading.Thread(target=ask_all, args=(3 * begin,)) for begin in range(8)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        run_together([lambda begin=begin: ask_all(3 * begin) for begin in range(8)])
         self.assertEqual(wrong, [])
 
     def test_closing_lets_a_question_end_that_another_thread_stops(self):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Shifts in Python. shifts_test.py, with the module on the path."""
+"""Shifts and smoothed paths in Python. shifts_test.py, with the module on the path."""
 
 import json
 import threading
@@ -7,108 +7,91 @@ import unittest
 
 import clearway
 import numpy as np
-from scene import RADIUS, SceneTest, first_poses
+from scene import RADIUS, SceneTest
 
-STEP, MOST = 0.25, 12
+OPTIONS = {"lateral": (-3, 2.75), "step": 0.25, "min_points": 1, "gap": 0.2}
 
 
 class ShiftTest(SceneTest):
-    @classmethod
-    def setUpClass(cls):
-        super().setUpClass()
-        # A path that winds, so that its y axes differ.
-        angle = 0.3 * np.sin(np.arange(30) / 5)
-        cls.poses = cls.poses.copy()
-        cls.poses[:, 0, 0] = cls.poses[:, 1, 1] = np.cos(angle)
-        cls.poses[:, 1, 0] = np.sin(angle)
-        cls.poses[:, 0, 1] = -np.sin(angle)
-        keep = np.random.default_rng(3).permutation(len(cls.points))[:60]
-        cls.points = cls.points[np.sort(keep)]
-        np.savetxt(cls.folder / "few.xyz", cls.points, "%.3f")
-        clearway.convert(cls.folder / "few.xyz", cls.folder / "site.h5", overwrite=True)
-        cls.store = clearway.Store(cls.folder / "site.h5")
-
-    def result(self, **parameters):
-        self.search(query=self.query(first_pose=True, **parameters))
-        return clearway.Result(self.folder / "out.h5")
-
-    def shifts(self, result, **options):
-        return clearway.find_shifts(result, self.store, self.model, self.poses,
-                                    lateral=(-STEP * MOST, STEP * MOST), step=STEP, min_points=1,
-                                    gap=0.2, **options)
-
-    def least(self, first, last):
-        """The least shift of the poses from first to last, by brute force."""
-        for steps in sorted(range(-MOST, MOST + 1), key=lambda k: (abs(k), -k)):
-            poses = self.poses[first:last + 1].copy()
-            poses[:, :3, 3] += steps * STEP * poses[:, :3, 1]
-            if (first_poses(self.points, self.model, poses, RADIUS) < 0).all():
-                return steps * STEP
-        return None
-
-    def test_shifts_are_those_of_brute_force(self):
-        result = self.result()
-        table = self.shifts(result)
+    def test_shifts_are_of_the_conflicts_and_in_the_report(self):
+        np.savetxt(self.folder / "few.xyz", self.points[::33], "%.3f")
+        clearway.convert(self.folder / "few.xyz", self.folder / "few.h5")
+        store, page = clearway.Store(self.folder / "few.h5"), self.folder / "page.html"
+        clearway.search(store, self.query(first_pose=True), self.folder / "few_out.h5")
+        result = clearway.Result(self.folder / "few_out.h5")
+        table = clearway.find_shifts(result, store, self.model, self.poses, **OPTIONS)
         conflicts = clearway.find_conflicts(result, self.poses, min_points=1, gap=0.2).listed
         self.assertGreater(len(conflicts), 5)
-        self.assertEqual(len(table), len(conflicts))
-        for row, conflict in zip(table.conflicts, conflicts):
-            self.assertEqual((row.conflict, row.first_pose, row.last_pose, row.chainage_to),
-                             (conflict.id, conflict.first_pose, conflict.last_pose,
-                              conflict.chainage_to))
-            self.assertEqual(row.shift, self.least(row.first_pose, row.last_pose))
-            self.assertIsNone(row.station_from)
-        self.assertEqual(table.path.shift, self.least(0, len(self.poses) - 1))
-        self.assertEqual((table.path.conflict, table.path.last_pose), (0, len(self.poses) - 1))
-        self.assertEqual((table.lateral_from, table.lateral_to, table.step),
-                         (-STEP * MOST, STEP * MOST, STEP))
+        self.assertEqual([(row.conflict, row.first_pose, row.last_pose, row.chainage_to, row.station_from)
+                          for row in table.conflicts],
+                         [(c.id, c.first_pose, c.last_pose, c.chainage_to, None) for c in conflicts])
+        # The path is straight, so moving it aside is moving the points.
+        for row in [*table.conflicts, table.path]:
+            poses = self.poses[row.first_pose:row.last_pose + 1]
+            if row.shift is not None:
+                aside = poses.copy()
+                aside[:, 1, 3] += row.shift
+                clearway.search(store, clearway.Query(self.model, aside, RADIUS),
+                                self.folder / "aside.h5", overwrite=True)
+                self.assertEqual(clearway.Result(self.folder / "aside.h5").size(), 0)
+        self.assertTrue(any(row.shift for row in table.conflicts))
+        self.assertEqual((table.path.conflict, table.path.last_pose, table.lateral_from,
+                          table.lateral_to, table.step), (0, len(self.poses) - 1, -3, 2.75, 0.25))
         self.assertEqual(table.searches,
                          table.path.searches + sum(row.searches for row in table.conflicts))
-        self.assertGreaterEqual(table.seconds, 0)
         self.assertIn("the whole path: ", repr(table))
         self.assertIn("conflict 1: ", repr(table.conflicts[0]))
-
-    def test_bodies_and_the_report(self):
         body = clearway.Body("one", self.model, self.poses)
-        self.search("bodies.h5", clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body],
-                                                first_pose=True))
-        options = {"lateral": (-STEP * MOST, STEP * MOST), "step": STEP, "min_points": 1, "gap": 0.2}
-        table = clearway.find_shifts(clearway.Result(self.folder / "bodies.h5"), self.store, None,
-                                     self.poses, bodies=[body], **options)
-        result = self.result()
-        plain = self.shifts(result)
-        self.assertEqual([row.shift for row in table.conflicts],
-                         [row.shift for row in plain.conflicts])
-        page = self.folder / "page.html"
-        summary = clearway.write_report(result, self.store, self.model, self.poses, page,
-                                        shifts=plain, min_points=1, gap=0.2)
-        told = json.loads(summary.facts)["shifts"]
-        self.assertEqual(told["path"]["shift"], plain.path.shift)
-        self.assertEqual([row["shift"] for row in told["list"]],
-                         [row.shift for row in plain.conflicts])
-        with self.assertRaisesRegex(clearway.InputError, "not those of the table of shifts"):
-            clearway.write_report(result, self.store, self.model, self.poses, page, shifts=plain,
-                                  min_points=10**6, overwrite=True)
-
-    def test_what_is_refused(self):
-        result = self.result()
-
-        def refused(error, words, poses=self.poses, **options):
-            with self.assertRaisesRegex(error, words):
-                clearway.find_shifts(result, self.store, self.model, poses, **options)
-
-        refused(clearway.UsageError, "^lateral: expected two numbers", lateral=(1,))
-        refused(TypeError, r"^lateral\[1\]: expected a number", lateral=(0, "far"))
-        refused(clearway.UsageError, "contains 0", lateral=(1, 2))
-        refused(clearway.UsageError, "^step: expected a number above 0", step=0)
-        refused(clearway.UsageError, "more than 1,000,000", step=1e-9)
-        refused(clearway.InputError, "another trajectory", poses=self.poses[:-1])
-        refused(TypeError, "did you mean 'bodies'", vehicle=[])
-        with self.assertRaisesRegex(TypeError, "^store: expected a clearway.Store"):
-            clearway.find_shifts(result, "site.h5", self.model, self.poses)
+        clearway.search(store, clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body],
+                                              first_pose=True), self.folder / "bodies.h5")
+        of_body = clearway.find_shifts(clearway.Result(self.folder / "bodies.h5"), store, None,
+                                       self.poses, bodies=[body], labels=clearway.PoseLabels(), **OPTIONS)
+        shifts = [row.shift for row in table.conflicts]
+        self.assertEqual([row.shift for row in of_body.conflicts], shifts)
+        facts = json.loads(clearway.write_report(result, store, self.model, self.poses, page, shifts=table,
+                                                 min_points=1, gap=0.2).facts)["shifts"]
+        self.assertEqual([facts["path"]["shift"], *(row["shift"] for row in facts["list"])],
+                         [table.path.shift, *shifts])
         stop = threading.Event()
         stop.set()
-        refused(clearway.Interrupted, "", stop=stop)
+        for kind, words, named in (
+                (clearway.UsageError, "^lateral: expected two numbers", {"lateral": (1,)}),
+                (TypeError, r"^lateral\[1\]: expected a number", {"lateral": (0, "far")}),
+                (clearway.UsageError, "contains 0", {"lateral": (1, 2)}),
+                (clearway.UsageError, "^step: expected a number above 0", {"step": 0}),
+                (clearway.UsageError, "more than 1,000,000", {"step": 1e-9}),
+                (clearway.InputError, "another trajectory", {"poses": self.poses[:-1]}),
+                (TypeError, "did you mean 'bodies'", {"vehicle": []}),
+                (TypeError, "^store: expected a clearway.Store", {"store": "site.h5"}),
+                (clearway.Interrupted, "", {"stop": stop})):
+            with self.subTest(named), self.assertRaisesRegex(kind, words):
+                clearway.find_shifts(**{"result": result, "store": store, "model": self.model,
+                                        "poses": self.poses, **named})
+        with self.assertRaisesRegex(clearway.InputError, "not those of the table of shifts"):
+            clearway.write_report(result, store, self.model, self.poses, page, shifts=table,
+                                  min_points=10**6, overwrite=True)
+
+    def test_smoothed_paths(self):
+        poses = self.poses.copy()
+        heading = 0.3 * np.sin(np.arange(len(poses)) / 5) + np.random.default_rng(4).uniform(-0.01, 0.01, 30)
+        poses[:, 0, 0] = poses[:, 1, 1] = np.cos(heading)
+        poses[:, 1, 0], poses[:, 0, 1] = np.sin(heading), -np.sin(heading)
+        path = clearway.smooth_trajectory(poses, 0.05, model=self.model)
+        self.assertEqual(path.poses.shape, (len(path.place), 4, 4))
+        self.assertEqual((path.place[0], path.place[-1]), (0, len(poses) - 1))
+        self.assertTrue(0 < path.largest_deviation <= 0.05 and path.largest_step <= 0.1)
+        self.assertTrue(path.error_at_poses > path.error_between_poses > 0)
+        self.assertIn("control points", repr(path))
+        self.assertLess(len(clearway.smooth_trajectory(poses, 0.05, model=self.model, step=0.3).poses),
+                        len(path.poses))
+        jump = poses.copy()
+        jump[25:, 1, 3] += 3
+        for kind, words, of, within, model in (
+                (clearway.UsageError, "expected the model", poses, 0.05, None),
+                (clearway.UsageError, "within", poses, -1, self.model),
+                (clearway.InputError, "from pose 24 to pose 25", jump, 0.05, self.model)):
+            with self.assertRaisesRegex(kind, words):
+                clearway.smooth_trajectory(of, within, model=model)
 
 
 if __name__ == "__main__":

@@ -6,19 +6,13 @@ import signal
 import subprocess
 import sys
 import threading
+import types
 import unittest
 from pathlib import Path
 
 import clearway
 import numpy as np
-from scene import SceneTest
-
-
-class Flag:
-    """A stop flag that is set when `condition` holds."""
-
-    def __init__(self, condition):
-        self.is_set = condition
+from scene import SceneTest, run_together
 
 
 class Watching(SceneTest):
@@ -74,7 +68,7 @@ class Watching(SceneTest):
         # The search ends only because the other thread comes to its end.
         with self.assertRaises(clearway.Interrupted):
             self.search("slow.h5", self.slow_query(), engine="grid", threads=1,
-                        stop=Flag(lambda: counted == 1_000_000))
+                        stop=types.SimpleNamespace(is_set=lambda: counted == 1_000_000))
         counter.join()
 
     def test_keyboard_interrupt(self):
@@ -117,11 +111,7 @@ class Watching(SceneTest):
                 if not np.array_equal(result.source(), expected) or len(result.xyz()) != len(result):
                     wrong.append(1)
 
-        threads = [threading.Thread(target=read) for _ in range(4)]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        run_together([read] * 4)
         self.assertFalse(wrong)
 
     def test_a_forked_process_searches_too(self):

@@ -1,16 +1,16 @@
 #!/usr/bin/python3
 """The module beside h5py in one process, and what it leaves behind."""
 
+import contextlib
 import importlib.util
 import resource
 import subprocess
 import sys
-import threading
 import unittest
 
 import clearway
 import numpy as np
-from scene import SceneTest
+from scene import SceneTest, run_together
 
 READ_WITH_BOTH = """
 import {first}, {second}
@@ -58,55 +58,38 @@ class BesideH5py(SceneTest):
         import h5py
         expected, wrong = clearway.Result(self.result).source(), []
 
-        def read(call):
-            for _ in range(40):
-                if not np.array_equal(call(), expected):
-                    wrong.append(call)
-
         def with_h5py():
             with h5py.File(self.result) as file:
                 return file["collisions/source"][:]
 
-        threads = [threading.Thread(target=read, args=(call,)) for call in
-                   (with_h5py, lambda: clearway.Result(self.result).source()) * 2]
-        for thread in threads:
-            thread.start()
-        for thread in threads:
-            thread.join()
+        def read(call):
+            wrong.extend(call for _ in range(40) if not np.array_equal(call(), expected))
+
+        run_together([lambda call=call: read(call) for call in
+                      (with_h5py, lambda: clearway.Result(self.result).source()) * 2])
         self.assertFalse(wrong)
 
 
 class LeavesNothingBehind(SceneTest):
     def test_many_small_reads(self):
-        poses = clearway.read_trajectory(self.write_path())
         self.search(query=self.query(first_pose=True, clearance=1.0, profile=1.0))
-        query = self.query()
-
-        def read():
-            result = clearway.Result(self.folder / "out.h5")
-            result.source(), result.xyz(), result.first_pose(), result.clearance().xyz
-            result.profile().xyz, result.model_box()
-            clearway.Store(self.folder / "site.h5").box()
-            query.poses = poses.astype("float32")
-            try:
-                clearway.Store("there/is/none")
-            except clearway.ResourceError:
-                pass
+        query, poses = self.query(), np.tile(self.poses, (20, 1, 1)).astype("float32")
 
         def grown_over(repeats):
             before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
             for _ in range(repeats):
-                read()
+                result = clearway.Result(self.folder / "out.h5")
+                result.source(), result.xyz(), result.first_pose(), result.clearance().xyz
+                result.profile().xyz, result.model_box()
+                clearway.Store(self.folder / "site.h5").box()
+                query.poses = poses
+                with contextlib.suppress(clearway.ResourceError):
+                    clearway.Store("there/is/none")
             return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
 
         grown_over(100)
         # KiB; leaking the smallest column of each call would be more.
         self.assertLess(grown_over(1500), 1000)
-
-    def write_path(self):
-        path = self.folder / "path.txt"
-        np.savetxt(path, np.tile(self.poses, (20, 1, 1)).reshape(-1, 16), "%.17g")
-        return path
 
 
 if __name__ == "__main__":
