@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Draws the JSON files of tools/experiments.py and tools/certainty.py as SVG and PNG, each named as its experiment, with the numbers as Markdown; `table` also as `engines`.
+"""Draws the JSON files of tools/experiments.py as SVG and PNG, each named as its experiment, with the
+numbers as Markdown; `table` also as `engines`.
 
 Reads *.json, and *.json.gz as `gzip` makes them. Other JSON files are left out.
 Needs matplotlib and numpy (Debian: python3-matplotlib).

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
-# Builds Clearway, measures the experiments of tools/experiments.py and tools/certainty.py, and draws their
-# charts: the whole evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12 or
-# 13). Run again, it goes on where it was stopped; another commit needs another FOLDER, or --force,
-# which removes the outputs of before.
+# Builds Clearway, measures the experiments of tools/experiments.py, and draws their charts: the whole
+# evaluation of docs/design/evaluation.md. Installs missing packages (Debian 12 or 13). Run again, it
+# goes on where it was stopped; another build needs another FOLDER, or --force, which removes the
+# outputs of before.
 # Usage: tools/evaluate.sh [--force] [--only NAME,...] [small|full] FOLDER
-# --only: these of the experiments below and certainty, so that a machine that is there for some
-#   minutes can do a part; the charts are drawn of all that FOLDER has.
+# --only: these of the experiments below, so that a machine that is there for some minutes can do a part;
+#   the charts are drawn of all that FOLDER has.
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 # Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
-experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers)
+experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers certainty)
 force=no
 only=
 while :; do
@@ -43,7 +43,7 @@ configure_release -DCLEARWAY_BENCHMARKS=ON -DCLEARWAY_PYTHON=ON -DCLEARWAY_CUDA=
 cmake --build build/release --target clearway-bench clearway_peers clearway_python
 
 if [ $force = yes ]; then
-  (cd "$folder" && rm -rf work certainty.json "${experiments[@]/%/.json}")
+  (cd "$folder" && rm -rf work "${experiments[@]/%/.json}")
 fi
 # Seconds after which a case is stopped, which then has failed.
 limit=6
@@ -54,15 +54,10 @@ wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
   wanted "$experiment" || continue
   printf '\n== %s\n' "$experiment"
-  tools/experiments.py build/release/tools "$experiment" -o "$folder/$experiment.json" \
+  PYTHONPATH=build/release/python tools/experiments.py build/release/tools "$experiment" -o "$folder/$experiment.json" \
     --work "$folder/work" --size "$size" --limit $limit --resume \
     ${scenes[$experiment]:+--scenes "${scenes[$experiment]}"}
 done
-if wanted certainty && [ ! -e "$folder/certainty.json" ]; then
-  printf '\n== certainty\n'
-  PYTHONPATH=build/release/python tools/certainty.py build/release/tools/clearway \
-    -o "$folder/certainty.json" --size "$size"
-fi
 printf '\n== charts\n'
 tools/charts.py "$folder" -o "$folder/charts"
 printf '\nAt size %s this took %d min %d s.\n' "$size" $((SECONDS / 60)) $((SECONDS % 60))

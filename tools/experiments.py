@@ -29,7 +29,11 @@ import h5py
 import numpy as np
 
 from bench import variants
+from trials import verdicts
 from trials.header import header
+from trials.scans import Scene
+from trials.seen_space import Ground, look
+from trials.verdicts import ERRORS, SHAPES, monte_carlo
 
 RADIUS = 0.1  # of all experiments that do not vary it, metres; it is the paper's
 SCENES = ("mine", "hall", "plant", "tunnel")
@@ -127,7 +131,9 @@ class Bench:
 
     def some(self, values):
         """All values, or of many the first, the middle and the last where the size is smoke."""
-        return values if self.size != "smoke" else [values[i] for i in sorted({0, len(values) // 2, len(values) - 1})]
+        if self.size != "smoke":
+            return values
+        return [values[i] for i in sorted({0, len(values) // 2, len(values) - 1})]
 
     def slow(self, values):
         """All values, or none where the size is smoke."""
@@ -568,7 +574,8 @@ def scaling(bench):
     rows += [("cell points", n, lambda n: bench.with_store(
         hall, f"hall-{bench.size}-cells-{n}", "--cell-points", n), ())
              for n in (256, 1_024, 4_096, 16_384, 65_536, 262_144)]
-    for (vary, value, files, more), engine in product(rows if bench.size != "smoke" else rows[::4], bench.exact_engines()):
+    rows = rows if bench.size != "smoke" else rows[::4]
+    for (vary, value, files, more), engine in product(rows, bench.exact_engines()):
         bench.measure({"engine": engine.name, "vary": vary, "value": value}, lambda: files(value),
                       [*engine.options, *more], refusal=MEMORY)
 
@@ -781,11 +788,69 @@ def session(bench):
         bench.keep({"scene": scene, "distance": distance, "askers": askers, "device": bench.here}, asked)
 
 
+def certainty(bench):
+    """How often a verdict is sure and wrong, of places that stand at the margin: by Monte Carlo, and by
+    asking Clearway about thousands of them; and how many cubes inside opaque things are called seen, by
+    noise and side of the cubes."""
+    import clearway  # PYTHONPATH=build/release/python
+    trials, places, scenes, rays = {"smoke": (20_000, 1_000, 1, 20_000), "small": (1_000_000, 20_000, 4, 100_000),
+                                    "full": (10_000_000, 100_000, 16, 400_000)}[bench.size]
+    all_sigmas, margins = (2, 3, 4), (0, 0.1)
+    for shape, (mix, errors), margin in product(SHAPES.values(), ERRORS.items(), margins):
+        found = {}
+
+        def of(sigmas):
+            found.update(found or monte_carlo(shape, errors, margin, all_sigmas, trials, 1))
+            return found[sigmas]
+
+        for sigmas in all_sigmas:
+            bench.keep({"vary": "place", "shape": shape.name, "errors": mix, "margin": margin,
+                        "sigmas": sigmas}, lambda: of(sigmas))
+    program = verdicts.Program(clearway)
+    for seed, (shape, mix, margin, sigmas) in enumerate(product(SHAPES.values(), ERRORS, margins, all_sigmas)):
+        def asked():
+            errors = ERRORS[mix]
+            drawn = verdicts.Places(shape, errors, margin, places, np.random.default_rng([2, seed]))
+            formulas = errors.margins(shape, sigmas)
+            expected = verdicts.wrong(drawn.distances(), margin, formulas)
+            clear, conflict, told = program.ask(drawn, errors, sigmas)
+            return {"places": places, "clear": int(clear.sum()), "conflict": int(conflict.sum()),
+                    "margins": told, "formulas": formulas,
+                    "differ": int((clear != expected[0]).sum() + (conflict != expected[1]).sum())}
+
+        case = bench.keep({"vary": "program", "shape": shape.name, "errors": mix, "margin": margin,
+                           "sigmas": sigmas}, asked)
+        found = case["findings"]
+        if found["differ"] or any(abs(found["margins"][name] - value) > 1e-12
+                                  for name, value in found["formulas"].items()):
+            bench.wrong.append(case["key"])
+    # The third and fourth normal noise are a sixteenth and a twelfth of 0.2 m.
+    for kind, size in [("uniform", bound) for bound in (0.005, 0.02, 0.045)] + [
+            ("normal", sigma) for sigma in (0.005, 0.0125, 0.2 / 12, 0.02, 0.05)]:
+        sums = {}
+
+        def of_side(side):
+            for seed in range(scenes if not sums else 0):
+                random = np.random.default_rng([3, seed])
+                with tempfile.TemporaryDirectory() as folder:
+                    ground = Ground(bench.options.programs / "clearway", Path(folder),
+                                    Scene(np.random.default_rng(seed)))
+                    seen_of = look(ground, random, rays, lambda n: random.uniform(-size, size, n)
+                                   if kind == "uniform" else random.normal(0, size, n), (0.1, 0.2, 0.4))
+                for of, counts in seen_of.items():
+                    sums[of] = {name: sums.get(of, {}).get(name, 0) + count for name, count in counts.items()}
+            return sums[side]
+
+        for side in (0.1, 0.2, 0.4):
+            bench.keep({"vary": "noise", "noise": kind, "size": size, "side": side}, lambda: of_side(side))
+
+
 # Whether an experiment takes --scenes, and a query of the user's.
 EXPERIMENTS = {table: (True, True), threads: (False, False), grid: (False, False), points: (False, False),
                accuracy: (False, False), stability: (False, False), scaling: (False, False),
                share: (True, False), surfaces: (False, True), seen: (True, False), section: (True, False),
-               peers: (True, True), check: (False, False), demand: (False, False), session: (True, True)}
+               peers: (True, True), check: (False, False), demand: (False, False), session: (True, True),
+               certainty: (False, False)}
 
 
 def words_of(choices):

@@ -27,7 +27,7 @@ check_tidy() {
   install_missing_packages
   cmake --preset release -B build/lint -DCLEARWAY_CUDA=OFF -DCLEARWAY_TESTS=OFF \
     -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >/dev/null
-  cmake --build build/lint --target clearway_commit clearway_report_page >/dev/null
+  cmake --build build/lint --target clearway_report_page >/dev/null
   local sources
   mapfile -t sources < <(/usr/bin/python3 -c '
 import json

@@ -10,6 +10,8 @@ import struct
 import h5py
 import numpy as np
 
+from trials.verdicts import rotations
+
 # Bytes of the LAS header: ASPRS LAS 1.4 R15, section 2.4.
 POINTS_AT, RECORD_BYTES, COUNT, SCALE, OFFSET, BOUNDS, LONG_COUNT = 96, 105, 107, 131, 155, 179, 247
 OCTAVES = 31
@@ -160,11 +162,7 @@ def noisy(poses, sigma):
     vector of sigma radians an axis."""
     noise = np.random.default_rng(1).normal(0, 1, (len(poses), 6)) * sigma
     poses = shifted(poses, noise[:, :3])
-    x, y, z = noise[:, 3:].T
-    cross = np.stack([0 * x, -z, y, z, 0 * x, -x, -y, x, 0 * x], 1).reshape(-1, 3, 3)
-    angle = np.linalg.norm(noise[:, 3:], axis=1)[:, None, None]
-    turn = np.eye(3) + np.sinc(angle / np.pi) * cross + np.sinc(angle / 2 / np.pi) ** 2 / 2 * cross @ cross
-    poses[:, :, :3] = turn @ poses[:, :, :3]
+    poses[:, :, :3] = rotations(noise[:, 3:]) @ poses[:, :, :3]
     return poses
 
 

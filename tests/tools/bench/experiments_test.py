@@ -149,6 +149,8 @@ class Experiments(unittest.TestCase):
         self.assertEqual([case["runs"][0]["environment_points"] for case in cases], [20_000, 40_000] * 3)
         for case in self.run_it("session", "--force", "--scenes", "hall")["cases"] if MODULE else ():
             self.assertGreater(case["findings"]["per_second"], 0)
+        for case in self.run_it("certainty", "--force")["cases"] if MODULE else ():
+            self.assertFalse(case["findings"].get("differ"))
 
     def test_seen(self):
         cases = self.cases("seen", "--scenes", "hall")

@@ -74,11 +74,11 @@ struct Frozen {
 
 // They change only with a scene's definition, and with them every measurement on the scenes.
 constexpr Frozen kFrozen[] = {
-    {Kind::kHall, 0x1fc61bcc10917536, 0x9e45b7c30bc4204f, 0x17d995d53450bfdd, 0},
-    {Kind::kPlant, 0x40f398c01bf56a75, 0xe94a9fb348c4f1e, 0x98a873e342b5d507, 0},
-    {Kind::kMine, 0xb8cda99bc11d9066, 0x1796e90e4db10c93, 0x4ff9abdb3ab9c52e, 0},
-    {Kind::kTunnel, 0x1f948fce5fc49023, 0xad9af581b5e94469, 0x180175abefbe0e6, 0},
-    {Kind::kRoad, 0xb9c3e3a6d6d05e33, 0x77948c48400ab8d6, 0x247fead9e19ead3c, 0},
+    {Kind::kHall, 0x1fc61bcc10917536, 0x9e45b7c30bc4204f, 0x17d995d53450bfdd, 0x5e270276c6084331},
+    {Kind::kPlant, 0x40f398c01bf56a75, 0xe94a9fb348c4f1e, 0x98a873e342b5d507, 0x3f4dc35899ed0a48},
+    {Kind::kMine, 0xb8cda99bc11d9066, 0x1796e90e4db10c93, 0x4ff9abdb3ab9c52e, 0xa9d31794fb6bf0f4},
+    {Kind::kTunnel, 0x1f948fce5fc49023, 0xad9af581b5e94469, 0x180175abefbe0e6, 0x68c1fae960d6fdf6},
+    {Kind::kRoad, 0xb9c3e3a6d6d05e33, 0x77948c48400ab8d6, 0x247fead9e19ead3c, 0xbe588ac4f452977d},
 };
 
 }  // namespace

@@ -161,6 +161,8 @@ class Share {
 
 }  // namespace
 
-nlohmann::ordered_json measure_shares(const ShareOptions& options) { return Share(options).measured(); }
+nlohmann::ordered_json measure_shares(const ShareOptions& options) {
+  return Share(options).measured();
+}
 
 }  // namespace clearway::bench

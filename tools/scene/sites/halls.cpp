@@ -26,21 +26,6 @@ struct Spot {
   double side;
 };
 
-Prism box(double s, double v, double half_length, double half_width, double bottom, double top) {
-  return {.s = s,
-          .v = v,
-          .half_length = half_length,
-          .half_width = half_width,
-          .bottom = bottom,
-          .top = top};
-}
-
-Prism pole(double s, double v, double radius, double bottom, double top) {
-  Prism out = box(s, v, radius, radius, bottom, top);
-  out.round = true;
-  return out;
-}
-
 void add_rack(World& world, const Spot& spot, Dice& dice) {
   const double half = dice.between(0.8, 1.4), depth = 0.45;
   for (const double ds : {-half, half}) {
@@ -107,25 +92,9 @@ void add_crate(World& world, const Spot& spot, Dice& dice) {
 }
 
 void add_clutter(World& world, const Spot& spot, Dice& dice) {
-  switch (dice.choice(6)) {
-    case 0:
-      add_rack(world, spot, dice);
-      break;
-    case 1:
-      add_machine(world, spot, dice);
-      break;
-    case 2:
-      add_robot(world, spot, dice);
-      break;
-    case 3:
-      add_person(world, spot, dice);
-      break;
-    case 4:
-      add_trolley(world, spot, dice);
-      break;
-    default:
-      add_crate(world, spot, dice);
-  }
+  constexpr void (*kKinds[])(World&, const Spot&, Dice&){add_rack,   add_machine, add_robot,
+                                                         add_person, add_trolley, add_crate};
+  kKinds[dice.choice(6)](world, spot, dice);
 }
 
 /// Adds rows of clutter on both sides, the first just clear of the body.

@@ -22,4 +22,40 @@ inline double along(double begin, double end, std::uint64_t number, std::uint64_
   return begin + (end - begin) * (static_cast<double>(number) / static_cast<double>(count - 1));
 }
 
+/// A prism of four sides that stands along the path, or, for a pole, a round one.
+inline Prism box(double s, double v, double half_length, double half_width, double bottom,
+                 double top, Roughness rough = {}) {
+  return {.s = s,
+          .v = v,
+          .half_length = half_length,
+          .half_width = half_width,
+          .bottom = bottom,
+          .top = top,
+          .rough = rough};
+}
+inline Prism pole(double s, double v, double radius, double bottom, double top,
+                  Roughness rough = {}) {
+  Prism out = box(s, v, radius, radius, bottom, top, rough);
+  out.round = true;
+  return out;
+}
+
+/// The plan of a scanner with two crossed planes, which is at place(share) of the path at a share
+/// of the time. Rays that hit nothing within the reach turn down.
+template <typename Place>
+ScanPlan crossed_planes(std::uint64_t points, double height, double reach, Place place) {
+  ScanPlan plan{.points = points,
+                .rays_a_sweep = rays_a_sweep(points, 0.05),
+                .sweep = {},
+                .reach = reach,
+                .noise = 0.004,
+                .open_reach = reach};
+  plan.sweep = [place, height, sweeps = plan.sweeps()](std::uint64_t number) {
+    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
+    const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
+    return Sweep{{place(share), 0, height}, sine_cosine(azimuth), 0, 2 * kPi};
+  };
+  return plan;
+}
+
 }  // namespace clearway::scene

@@ -64,18 +64,11 @@ void add_fittings(World& world, double length, std::uint64_t seed) {
   world.add_everywhere(-1.62, -1.56, 3.05, 3.11);
   for (double s = 0; s < length; s += dice.between(1, 6)) {  // rubble along the sides
     const double side = dice.chance(0.5) ? 1 : -1, radius = dice.between(0.2, 0.6);
-    world.add({.s = s,
-               .v = side * dice.between(1.4, 2.2),
-               .half_length = radius,
-               .half_width = radius,
-               .bottom = -0.1,
-               .top = dice.between(0.15, 0.8),
-               .round = true,
-               .rough = kRubble});
+    const double v = side * dice.between(1.4, 2.2);
+    world.add(pole(s, v, radius, -0.1, dice.between(0.15, 0.8), kRubble));
   }
   for (double s = 3; s < length; s += 6) {  // lamps
-    world.add(
-        {.s = s, .v = -0.7, .half_length = 0.15, .half_width = 0.1, .bottom = 3.7, .top = 3.8});
+    world.add(box(s, -0.7, 0.15, 0.1, 3.7, 3.8));
   }
 }
 

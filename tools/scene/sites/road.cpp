@@ -11,7 +11,6 @@ namespace clearway::scene {
 namespace {
 
 constexpr double kScannerHeight = 2.6;
-constexpr double kRangeNoise = 0.004;
 constexpr double kReach = 40;
 constexpr double kKerb = 3.2;  // half the width of the carriageway
 constexpr double kPavement = 0.12;
@@ -33,13 +32,8 @@ void add_houses(World& world, double length, Dice& dice) {
   for (const double side : {-1.0, 1.0}) {
     for (double s = -kReach; s < length + kReach;) {
       const double half_length = dice.between(4, 8), front = dice.between(6.5, 9);
-      world.add({.s = s + half_length,
-                 .v = side * (front + 4),
-                 .half_length = half_length,
-                 .half_width = 4,
-                 .bottom = -1,
-                 .top = dice.between(5, 9),
-                 .rough = kPlaster});
+      world.add(box(s + half_length, side * (front + 4), half_length, 4, -1, dice.between(5, 9),
+                    kPlaster));
       s += 2 * half_length + dice.between(1, 9);
     }
   }
@@ -49,76 +43,26 @@ void add_houses(World& world, double length, Dice& dice) {
 /// on the pavement.
 void add_roadside(World& world, double length, Dice& dice) {
   for (double s = -20; s < length + 20; s += 28) {
-    world.add({.s = s,
-               .v = 3.9,
-               .half_length = 0.08,
-               .half_width = 0.08,
-               .bottom = 0,
-               .top = 6.2,
-               .round = true});
-    world.add({.s = s, .v = 3, .half_length = 0.06, .half_width = 0.9, .bottom = 6.1, .top = 6.2});
+    world.add(pole(s, 3.9, 0.08, 0, 6.2));
+    world.add(box(s, 3, 0.06, 0.9, 6.1, 6.2));
   }
   for (double s = -10; s < length + 10; s += dice.between(9, 22)) {
     const double v = -dice.between(4.6, 5.2);
-    world.add({.s = s,
-               .v = v,
-               .half_length = 0.2,
-               .half_width = 0.2,
-               .bottom = 0,
-               .top = 5,
-               .round = true,
-               .rough = {0.03, 0.2, 0.01, 0.05}});
-    world.add({.s = s,
-               .v = v,
-               .half_length = 1.8,
-               .half_width = 1.8,
-               .bottom = 4.9,
-               .top = dice.between(7, 10),
-               .round = true,
-               .rough = kLeaves});
+    world.add(pole(s, v, 0.2, 0, 5, {0.03, 0.2, 0.01, 0.05}));
+    world.add(pole(s, v, 1.8, 4.9, dice.between(7, 10), kLeaves));
   }
   for (double s = 5; s < length; s += dice.between(7, 30)) {
     if (std::abs(s - kVan) < 12) continue;
     const double side = dice.chance(0.6) ? 1 : -1;
-    world.add({.s = s,
-               .v = side * 3.5,
-               .half_length = 2.1,
-               .half_width = 0.85,
-               .bottom = 0.2,
-               .top = dice.between(1.35, 1.6)});
+    world.add(box(s, side * 3.5, 2.1, 0.85, 0.2, dice.between(1.35, 1.6)));
   }
 }
 
 void add_obstacles(World& world) {
-  world.add({.s = kSign,
-             .v = 3.6,
-             .half_length = 0.06,
-             .half_width = 0.06,
-             .bottom = 0,
-             .top = 4.6,
-             .round = true});
-  world.add(
-      {.s = kSign, .v = 2.4, .half_length = 0.04, .half_width = 1.2, .bottom = 4.5, .top = 4.6});
-  world.add(
-      {.s = kSign, .v = 1.7, .half_length = 0.05, .half_width = 0.5, .bottom = 3.6, .top = 4.5});
-  world.add(
-      {.s = kVan, .v = 2.6, .half_length = 2.6, .half_width = 0.95, .bottom = 0.3, .top = 2.4});
-}
-
-ScanPlan car_plan(const Path& path, std::uint64_t points) {
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep(points, 0.05),
-                .sweep = {},
-                .reach = kReach,
-                .noise = kRangeNoise,
-                .open_reach = kReach};
-  const std::uint64_t sweeps = plan.sweeps();
-  plan.sweep = [&path, sweeps](std::uint64_t number) {
-    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
-    const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
-    return Sweep{{share * path.length(), 0, kScannerHeight}, sine_cosine(azimuth), 0, 2 * kPi};
-  };
-  return plan;
+  world.add(pole(kSign, 3.6, 0.06, 0, 4.6));
+  world.add(box(kSign, 2.4, 0.04, 1.2, 4.5, 4.6));
+  world.add(box(kSign, 1.7, 0.05, 0.5, 3.6, 4.5));
+  world.add(box(kVan, 2.6, 2.6, 0.95, 0.3, 2.4));
 }
 
 }  // namespace
@@ -138,7 +82,8 @@ std::unique_ptr<const Scene> make_road(const Sizes& sizes, std::uint64_t seed) {
   add_roadside(scene->world, length, dice);
   add_obstacles(scene->world);
   scene->world.finish(scene->path, kReach);
-  scene->plan = car_plan(scene->path, sizes.points);
+  scene->plan = crossed_planes(sizes.points, kScannerHeight, kReach,
+                               [length](double share) { return share * length; });
   scene->model = sample_mesh(
       lorry(), sizes.model_points, 0.002, [](const Vec3&) { return 1.0; },
       Random(seed, kModelStream));

@@ -14,7 +14,6 @@ namespace {
 constexpr double kOpenBefore = 160, kTunnel = 1150;
 constexpr double kOpenShare = 0.06;  // share of the sweeps on each open stretch
 constexpr double kScannerHeight = 3.6;
-constexpr double kRangeNoise = 0.004;
 constexpr double kOpenReach = 45;
 constexpr double kGround = -0.75;  // ground beside the ballast bed; the rails' tops are at 0
 constexpr double kHeapedShare = 0.8;
@@ -56,68 +55,51 @@ void add_track(World& world, double length, Dice& dice) {
   world.add_everywhere(-1.7, 1.7, kGround - 1, -0.2, kBallast);
   for (double s = -40; s < length + 40; s += 4) {  // ballast heaped between the rails
     if (dice.chance(kHeapedShare)) {
-      world.add({.s = s,
-                 .v = 0,
-                 .half_length = 2,
-                 .half_width = 0.62,
-                 .bottom = -0.3,
-                 .top = 0.03,
-                 .rough = kBallast});
+      world.add(box(s, 0, 2, 0.62, -0.3, 0.03, kBallast));
     }
   }
   for (double s = -40; s < length + 40; s += 0.6) {
-    world.add(
-        {.s = s, .v = 0, .half_length = 0.12, .half_width = 1.3, .bottom = -0.3, .top = -0.17});
+    world.add(box(s, 0, 0.12, 1.3, -0.3, -0.17));
   }
 }
 
 void add_tunnel_fittings(World& world, Dice& dice) {
   const double end = kOpenBefore + kTunnel;
-  const auto box = [&](double s, double v, double l, double h, double bottom, double top) {
-    world.add({.s = s, .v = v, .half_length = l, .half_width = h, .bottom = bottom, .top = top});
-  };
   for (double s = kOpenBefore; s < end; s += 2) {
-    box(s + 1, 2.3, 1, 0.7, -0.5, 0.42);    // walkway
-    box(s + 1, -2.35, 1, 0.4, -0.5, 0.05);  // cable duct
-    box(s + 1, 2.68, 1, 0.04, 1.3, 1.36);   // handrail
-    box(s + 1, -2.66, 1, 0.05, 1.9, 2.05);  // cables
-    box(s + 1, 0, 1, 0.008, 5.2, 5.22);     // contact wire
+    world.add(box(s + 1, 2.3, 1, 0.7, -0.5, 0.42));    // walkway
+    world.add(box(s + 1, -2.35, 1, 0.4, -0.5, 0.05));  // cable duct
+    world.add(box(s + 1, 2.68, 1, 0.04, 1.3, 1.36));   // handrail
+    world.add(box(s + 1, -2.66, 1, 0.05, 1.9, 2.05));  // cables
+    world.add(box(s + 1, 0, 1, 0.008, 5.2, 5.22));     // contact wire
   }
   for (double s = kOpenBefore + 12; s < end; s += 25) {
-    box(s, 0.6, 0.05, 0.6, 5.35, 5.43);  // its cantilevers
-    box(s, 1.2, 0.06, 0.06, 5.2, 6);
-    box(s + 5, -2.6, 0.2, 0.15, 1.2, 1.8);  // boxes on the wall
+    world.add(box(s, 0.6, 0.05, 0.6, 5.35, 5.43));  // its cantilevers
+    world.add(box(s, 1.2, 0.06, 0.06, 5.2, 6));
+    world.add(box(s + 5, -2.6, 0.2, 0.15, 1.2, 1.8));  // boxes on the wall
   }
   for (double s = kOpenBefore + 5; s < end; s += dice.between(15, 45)) {  // left behind
     const double half_length = dice.between(0.2, 0.8);
-    box(s, -1.75, half_length, 0.25, -0.2, dice.between(0.3, 0.7));
+    world.add(box(s, -1.75, half_length, 0.25, -0.2, dice.between(0.3, 0.7)));
   }
   for (double s = kOpenBefore + 30; s < end - 40; s += dice.between(40, 90)) {  // platforms
     const double side = dice.chance(0.5) ? 1 : -1;
-    box(s, side * 2.2, 14, 0.7, -0.5, 0.9);
+    world.add(box(s, side * 2.2, 14, 0.7, -0.5, 0.9));
   }
   for (const double s : {kOpenBefore, end}) {  // portals
-    for (const double v : {-7.3, 7.3}) box(s, v, 0.4, 4.5, -2, 8);
-    box(s, 0, 0.4, 2.8, 6.0, 8);
+    for (const double v : {-7.3, 7.3}) world.add(box(s, v, 0.4, 4.5, -2, 8));
+    world.add(box(s, 0, 0.4, 2.8, 6.0, 8));
   }
 }
 
 void add_open_fittings(World& world, double begin, double end, Dice& dice) {
   for (double s = begin + 10; s < end; s += 45) {
-    world.add({.s = s, .v = 3.2, .half_length = 0.15, .half_width = 0.15, .bottom = -2, .top = 7});
-    world.add(
-        {.s = s, .v = 1.6, .half_length = 0.05, .half_width = 1.6, .bottom = 5.6, .top = 5.7});
+    world.add(box(s, 3.2, 0.15, 0.15, -2, 7));
+    world.add(box(s, 1.6, 0.05, 1.6, 5.6, 5.7));
   }
   for (double s = begin; s < end; s += dice.between(1, 5)) {  // bushes and trees
     const double side = dice.chance(0.5) ? 1 : -1, radius = dice.between(0.3, 1.6);
-    world.add({.s = s,
-               .v = side * dice.between(6, 24),
-               .half_length = radius,
-               .half_width = radius,
-               .bottom = -2,
-               .top = dice.between(0.3, 6),
-               .round = true,
-               .rough = {0.3 * radius, 0.5, 0.1, 0.15}});
+    const double v = side * dice.between(6, 24);
+    world.add(pole(s, v, radius, -2, dice.between(0.3, 6), {0.3 * radius, 0.5, 0.1, 0.15}));
   }
 }
 
@@ -130,25 +112,6 @@ double train_position(double share, double length) {
            (share - (1 - kOpenShare)) / kOpenShare * (length - kOpenBefore - kTunnel);
   }
   return kOpenBefore + (share - kOpenShare) / (1 - 2 * kOpenShare) * kTunnel;
-}
-
-ScanPlan train_plan(const Path& path, std::uint64_t points) {
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep(points, 0.05),
-                .sweep = {},
-                .reach = kOpenReach,
-                .noise = kRangeNoise,
-                .open_reach = kOpenReach};
-  const std::uint64_t sweeps = plan.sweeps();
-  plan.sweep = [&path, sweeps](std::uint64_t number) {
-    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
-    const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
-    return Sweep{{train_position(share, path.length()), 0, kScannerHeight},
-                 sine_cosine(azimuth),
-                 0,
-                 2 * kPi};
-  };
-  return plan;
 }
 
 /// A pose of the wagon with both pivots on the track's centreline, so that in a curve the middle
@@ -185,7 +148,8 @@ std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed)
   add_open_fittings(scene->world, -40, kOpenBefore, dice);
   add_open_fittings(scene->world, kOpenBefore + kTunnel, length + 40, dice);
   scene->world.finish(scene->path, kOpenReach);
-  scene->plan = train_plan(scene->path, sizes.points);
+  scene->plan = crossed_planes(sizes.points, kScannerHeight, kOpenReach,
+                               [length](double share) { return train_position(share, length); });
   scene->model = sample_mesh(train_wagon(), sizes.model_points, 0.004, scanned_density,
                              Random(seed, kModelStream));
   scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
