@@ -12,7 +12,7 @@ if(CLEARWAY_GZIP)
 endif()
 # Libraries of headers, whose parts are in the binaries: their notices, as Debian has them.
 foreach(name libcli11-dev libeigen3-dev libspdlog-dev libxxhash-dev nlohmann-json3-dev
-    libnanoflann-dev pybind11-dev)
+    pybind11-dev)
   if(EXISTS /usr/share/doc/${name}/copyright)
     install(FILES /usr/share/doc/${name}/copyright RENAME ${name}
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/clearway/notices COMPONENT package)

@@ -9,12 +9,11 @@ program_packages=(
 )
 # What the Python module needs besides, and what makes packages.
 python_packages=(pybind11-dev python3-dev python3-numpy)
-packaging_packages=(libnanoflann-dev dpkg-dev file patchelf)
-# What everything needs: clearway-bench, the tests and the pictures too.
+packaging_packages=(dpkg-dev file patchelf)
+# What everything needs: clearway-bench with other libraries, the tests and the charts too.
 clearway_packages=(
   "${program_packages[@]}" "${python_packages[@]}" "${packaging_packages[@]}"
-  catch2 libcgal-dev hdf5-tools python3-h5py
-  python3-matplotlib python3-pil
+  catch2 libcgal-dev libnanoflann-dev hdf5-tools python3-h5py python3-matplotlib
 )
 
 # install_missing_packages [PACKAGE...]: without names, what everything needs.

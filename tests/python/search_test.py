@@ -391,13 +391,6 @@ class Stores(SceneTest):
         self.assertEqual(result.parameters().ignore_classes, [2])
         self.assertTrue(len(result) and (result.source() % 3 != 0).all())
 
-    def test_files_opened_twice(self):
-        self.search()
-        one, two = (clearway.Result(self.folder / "out.h5") for _ in range(2))
-        np.testing.assert_array_equal(one.source(), two.source())
-        del one
-        self.assertEqual(two.xyz().shape[1], 3)
-
 
 class Inputs(SceneTest):
     def test_trajectories(self):

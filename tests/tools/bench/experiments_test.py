@@ -106,7 +106,7 @@ class Experiments(unittest.TestCase):
     def test_stability(self):
         cases = self.run_it("stability", "--force")["cases"]
         vary = {case["parameters"]["vary"] for case in cases}
-        self.assertEqual(len(vary), 9)
+        self.assertEqual(len(vary), 10)
         for case in cases:
             at = case["parameters"]
             refused = (at["vary"].startswith("least") or at["vary"] == "--memory" and
