@@ -165,6 +165,34 @@ def panels(sheet, rows, columns, legend_lines=0, **how):
     return axes, place
 
 
+def log_panels(sheet, axes, letters, parts, title, label, draw):
+    """A panel with logarithmic axes for each of `parts`, (what is varied, its label), which
+    draw(panel, what) fills."""
+    for letter, panel, (vary, of_x) in zip(letters, axes, parts):
+        draw(panel, vary)
+        panel.set(title=f"{letter}  {title}by {vary}", xlabel=of_x, ylabel=label)
+        log_axis(panel.xaxis)
+        seconds_axis(panel.yaxis)
+        room_for_failures(panel)
+
+
+def wide_bars(sheet, row, names, styles, title, label, bars):
+    """One wide panel over a row of two: a group of bars for each name, in each a bar a style, which
+    bars(axes, style's name, name, y, height, how) draws."""
+    axes = sheet.figure.add_subplot(row[0].get_gridspec()[0, :])
+    for unused in row:
+        unused.remove()
+    height = 0.8 / max(len(styles), 1)
+    for i, (of, style) in enumerate(styles.items()):
+        for k, name in enumerate(names):
+            bars(axes, of, name, k + (i - (len(styles) - 1) / 2) * height, height * 0.9,
+                 {"color": style.colour, "hatch": style.hatch, "edgecolor": "black", "linewidth": 0.4})
+    axes.set_yticks(range(len(names)), names)
+    axes.invert_yaxis()
+    axes.set(title=title, xlabel=label)
+    return axes
+
+
 def legend_in(place, handles, labels, columns):
     legend = place.legend(handles, labels, loc="center", ncol=columns, frameon=False,
                           borderaxespad=0, columnspacing=1.4)

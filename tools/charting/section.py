@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from charting.plot import (handle_of, legend_in, line, log_axis, panels, room_for_failures,
-                           seconds_axis)
+from charting.plot import handle_of, legend_in, line, log_panels, panels, wide_bars
 from charting.sheet import Sheet
 from charting.style import styles_of
 
@@ -18,16 +17,27 @@ def draw(record):
     axes, place = panels(sheet, 3, 2, legend_lines=1)
     scenes = record.names("scene")
     styles = styles_of(scenes)
-    draw_methods(sheet, axes[0], record, styles)
-    for letter, panel, (vary, label) in zip("bcde", axes[1:].flat, PANELS):
+    methods = [method for method in METHODS
+               if any(seconds_of(record, scene, method) is not None for scene in styles)]
+
+    def draw_bar(panel, scene, method, y, height, how):
+        seconds = seconds_of(record, scene, method)
+        if seconds is not None:
+            panel.barh(y, seconds, height, **how)
+            panel.text(seconds * 1.1, y, f"{seconds:.3g}", va="center", fontsize=6)
+
+    wide = wide_bars(sheet, axes[0], methods, styles, "a  the largest load, by method", "seconds",
+                     draw_bar)
+    wide.set_xscale("log")
+    wide.set_xlim(right=wide.get_xlim()[1] * 2)
+
+    def draw_lines(panel, vary):
         for name in scenes:
             line(sheet, panel, record.where(vary=vary, scene=name),
                  lambda case: float(case["value"]), lambda case: case.seconds("search"),
                  styles[name], name)
-        panel.set(title=f"{letter}  by {vary}", xlabel=label, ylabel="search (s)")
-        log_axis(panel.xaxis)
-        seconds_axis(panel.yaxis)
-        room_for_failures(panel)
+
+    log_panels(sheet, axes[1:].flat, "bcde", PANELS, "", "search (s)", draw_lines)
     legend_in(place, [handle_of(styles[name]) for name in scenes], scenes, len(scenes))
     sheet.say("a: the time of one answer for all outlines. Brute force is computed at some of the "
               "poses, on one thread, and scaled to all of them; 200 runs are 20 times the whole "
@@ -51,31 +61,6 @@ def seconds_of(record, scene, method):
         if "seconds" in case.findings:
             return case.findings["seconds"]
     return None
-
-
-def draw_methods(sheet, row, record, styles):
-    """One wide panel over a row of two: a group of bars a method."""
-    grid = row[0].get_gridspec()
-    axes = sheet.figure.add_subplot(grid[0, :])
-    for unused in row:
-        unused.remove()
-    methods = [method for method in METHODS
-               if any(seconds_of(record, scene, method) is not None for scene in styles)]
-    height = 0.8 / max(len(styles), 1)
-    for i, (scene, style) in enumerate(styles.items()):
-        for k, method in enumerate(methods):
-            seconds = seconds_of(record, scene, method)
-            if seconds is None:
-                continue
-            y = k + (i - (len(styles) - 1) / 2) * height
-            axes.barh(y, seconds, height * 0.9, color=style.colour, hatch=style.hatch,
-                      edgecolor="black", linewidth=0.4)
-            axes.text(seconds * 1.1, y, f"{seconds:.3g}", va="center", fontsize=6)
-    axes.set_yticks(range(len(methods)), methods)
-    axes.invert_yaxis()
-    axes.set_xscale("log")
-    axes.set_xlim(right=axes.get_xlim()[1] * 2)
-    axes.set(title="a  the largest load, by method", xlabel="seconds")
 
 
 def speed_text(record, scenes):

@@ -1,8 +1,7 @@
 """What it costs to know more than the set: time by question, and of seen space by what it grows
 with."""
 
-from charting.plot import (handle_of, legend_in, line, log_axis, panels, room_for_failures,
-                           seconds_axis, spread)
+from charting.plot import handle_of, legend_in, line, log_panels, panels, spread, wide_bars
 from charting.sheet import Sheet
 from charting.style import styles_of
 
@@ -16,8 +15,18 @@ def draw(record):
     axes, place = panels(sheet, 3, 2, legend_lines=1)
     scenes = record.names("scene")
     styles = styles_of(scenes)
-    draw_questions(sheet, axes[0], record, styles)
-    for letter, panel, (vary, label) in zip("bcde", axes[1:].flat, PANELS):
+    cases = record.where(vary="question")
+
+    def draw_bars(panel, scene, question, y, height, how):
+        for case in cases:
+            if case["scene"] == scene and case["value"] == question and case.runs:
+                x, below, above = spread(case.seconds("total"))
+                panel.barh(y, x, height, xerr=[[below], [above]], **how)
+
+    wide_bars(sheet, axes[0], list(dict.fromkeys(case["value"] for case in cases)), styles,
+              "a  the whole command, by question", "total (s)", draw_bars)
+
+    def draw_lines(panel, vary):
         for name in scenes:
             cases = record.where(vary=vary, scene=name)
             line(sheet, panel, cases, lambda case: float(case["value"]),
@@ -25,38 +34,14 @@ def draw(record):
             line(sheet, panel, [case for case in cases if case.runs],
                  lambda case: float(case["value"]), lambda case: case.seconds("swept"),
                  styles[name], name, alpha=0.4)
-        panel.set(title=f"{letter}  seen space by {vary}", xlabel=label, ylabel="seen space (s)")
-        log_axis(panel.xaxis)
-        seconds_axis(panel.yaxis)
-        room_for_failures(panel)
+
+    log_panels(sheet, axes[1:].flat, "bcde", PANELS, "seen space ", "seen space (s)", draw_lines)
     legend_in(place, [handle_of(styles[name]) for name in scenes], scenes, len(scenes))
     sheet.say("a: the whole command, by what is asked. b to e: the part of seen space alone, in "
               "cubes of 0.2 m where their side is not varied; pale: the part of it that finds the "
               "swept cubes, so that the distance between the two lines is what the beams take. "
               + swept_text(record, scenes))
     return sheet
-
-
-def draw_questions(sheet, row, record, styles):
-    """One wide panel over a row of two: a group of bars a question."""
-    grid = row[0].get_gridspec()
-    axes = sheet.figure.add_subplot(grid[0, :])
-    for unused in row:
-        unused.remove()
-    cases = record.where(vary="question")
-    names = list(dict.fromkeys(case["value"] for case in cases))
-    height = 0.8 / max(len(styles), 1)
-    for i, (scene, style) in enumerate(styles.items()):
-        for case in cases:
-            if case["scene"] != scene or not case.runs:
-                continue
-            x, below, above = spread(case.seconds("total"))
-            y = names.index(case["value"]) + (i - (len(styles) - 1) / 2) * height
-            axes.barh(y, x, height * 0.9, color=style.colour, hatch=style.hatch,
-                      edgecolor="black", linewidth=0.4, xerr=[[below], [above]])
-    axes.set_yticks(range(len(names)), names)
-    axes.invert_yaxis()
-    axes.set(title="a  the whole command, by question", xlabel="total (s)")
 
 
 def swept_text(record, scenes):
