@@ -186,7 +186,7 @@ def bytes_text(count):
 def least_of(record, option, engine):
     """As a refusal named it; without one, the least that worked."""
     for case in record.where(vary="least" + option, engine=engine):
-        found = re.search(r"\(" + re.escape(option) + r" (\d+) is enough", case.failure or "")
+        found = re.search(re.escape(option) + r" (\d+) is enough", case.failure or "")
         if found:
             return int(found[1])
     cases = record.where(vary=option, engine=engine)
