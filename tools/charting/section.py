@@ -39,8 +39,9 @@ def draw(record):
 
     log_panels(sheet, axes[1:].flat, "bcde", PANELS, "", "search (s)", draw_lines)
     legend_in(place, [handle_of(styles[name]) for name in scenes], scenes, len(scenes))
-    sheet.say("a: the time of one answer for all outlines. Brute force is computed at some of the "
-              "poses, on one thread, and scaled to all of them; 200 runs are 20 times the whole "
+    brute_force = ("Brute force is computed at some of the poses, on one thread, and scaled to all of "
+                   "them; ") if "brute force" in methods else ""
+    sheet.say(f"a: the time of one answer for all outlines. {brute_force}200 runs are 20 times the whole "
               "commands of 10 widths, a closed box each. b to e: one section on the CPU, with "
               "bins of 5 m, cells of 0.02 m, a load of 4.5 m and all threads where these are not "
               "varied. " + speed_text(record, scenes))

@@ -8,8 +8,8 @@
 #include <CGAL/property_map.h>
 #include <CGAL/version.h>
 
+#include <boost/iterator/function_output_iterator.hpp>
 #include <cmath>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <tuple>
 
@@ -26,28 +26,6 @@ using Traits = CGAL::Search_traits_adapter<Entry, CGAL::Nth_of_tuple_property_ma
 // Stores the coordinates of a leaf side by side, which the manual advises for speed.
 using Tree = CGAL::Kd_tree<Traits, CGAL::Sliding_midpoint<Traits>, CGAL::Tag_true, CGAL::Tag_true>;
 using Sphere = CGAL::Fuzzy_sphere<Traits>;
-
-/// An output iterator that marks what it is given.
-class Marker {
- public:
-  using iterator_category = std::output_iterator_tag;
-  using value_type = void;
-  using difference_type = std::ptrdiff_t;
-  using pointer = void;
-  using reference = void;
-
-  explicit Marker(Marks& marks) : marks_(&marks) {}
-  Marker& operator*() { return *this; }
-  Marker& operator++() { return *this; }
-  Marker operator++(int) { return *this; }
-  Marker& operator=(const Entry& entry) {
-    marks_->mark(std::get<1>(entry));
-    return *this;
-  }
-
- private:
-  Marks* marks_;
-};
 
 class Cgal : public Peer {
  public:
@@ -74,8 +52,10 @@ class Cgal : public Peer {
     // A sphere includes its boundary, so the largest radius below ours gives what is nearer.
     const double radius = std::nextafter(options_.radius, 0.0);
     search_places(poses, model, options_.threads, [&] {
-      return [&](const Vec3& at) {
-        tree_.search(Marker(marks), Sphere(Point(at.x, at.y, at.z), radius, 0.0, tree_.traits()));
+      const auto mark = boost::make_function_output_iterator(
+          [&marks](const Entry& entry) { marks.mark(std::get<1>(entry)); });
+      return [this, mark, radius](const Vec3& at) {
+        tree_.search(mark, Sphere(Point(at.x, at.y, at.z), radius, 0.0, tree_.traits()));
       };
     });
   }
