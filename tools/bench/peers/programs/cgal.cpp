@@ -27,6 +27,12 @@ using Traits = CGAL::Search_traits_adapter<Entry, CGAL::Nth_of_tuple_property_ma
 using Tree = CGAL::Kd_tree<Traits, CGAL::Sliding_midpoint<Traits>, CGAL::Tag_true, CGAL::Tag_true>;
 using Sphere = CGAL::Fuzzy_sphere<Traits>;
 
+/// What is done with a point that the tree finds.
+struct Marker {
+  Marks* marks;
+  void operator()(const Entry& entry) const { marks->mark(std::get<1>(entry)); }
+};
+
 class Cgal : public Peer {
  public:
   Cgal(std::span<const Vec3> points, const PeerOptions& options) : options_(options) {
@@ -52,8 +58,7 @@ class Cgal : public Peer {
     // A sphere includes its boundary, so the largest radius below ours gives what is nearer.
     const double radius = std::nextafter(options_.radius, 0.0);
     search_places(poses, model, options_.threads, [&] {
-      const auto mark = boost::make_function_output_iterator(
-          [&marks](const Entry& entry) { marks.mark(std::get<1>(entry)); });
+      const auto mark = boost::make_function_output_iterator(Marker{&marks});
       return [this, mark, radius](const Vec3& at) {
         tree_.search(mark, Sphere(Point(at.x, at.y, at.z), radius, 0.0, tree_.traits()));
       };
