@@ -176,6 +176,20 @@ class Arguments(SceneTest):
         self.search(threads=2.0, strict=np.bool_(False))
 
 
+def shown(thing):
+    """What a call returned, as a text that differs where a user sees another value."""
+    if isinstance(thing, (list, tuple)):
+        return str([*map(shown, thing)])
+    if isinstance(thing, np.ndarray):
+        return str(thing.tolist())
+    rows = next((value for name in ("listed", "rows", "conflicts")
+                 if isinstance(value := getattr(thing, name, None), list)), [])
+    members = [getattr(thing, name) for name in ("vertices", "poses", "model") if hasattr(thing, name)]
+    numbers = [[value for name in dir(row) if not name.startswith("_")
+                and isinstance(value := getattr(row, name), (int, float, str))] for row in rows]
+    return f"{thing!r} {numbers} {shown(members) if members else ''}"
+
+
 class Defaults(SceneTest):
     """What a call does without an argument it does with the argument's default too."""
 
@@ -213,7 +227,7 @@ class Defaults(SceneTest):
                 "write_report": (result, site, model, path, "new")}
 
     def outcome(self, call, given, **named):
-        """What a call returns or raises, and the length of what it writes."""
+        """What a call returns or raises, with its rows, and what it writes."""
         self.new = self.folder / f"{self.count}.h5"
         self.count += 1
         try:
@@ -221,9 +235,8 @@ class Defaults(SceneTest):
                            for each in given), **named)
         except Exception as error:
             found = error
-        shown = found.tolist() if isinstance(found, np.ndarray) else repr(found)
-        size = self.new.stat().st_size if self.new.exists() else None
-        return str(shown).replace(self.new.name, ""), size
+        written = self.new.read_bytes() if self.new.exists() else b""
+        return shown(found).replace(self.new.name, ""), written.replace(self.new.name.encode(), b"")
 
     def test_every_default_may_be_given(self):
         self.addCleanup(os.chdir, os.getcwd())
@@ -242,6 +255,56 @@ class Defaults(SceneTest):
                 with self.subTest(call=name, argument=parameter.name):
                     self.assertEqual(
                         self.outcome(call, given, **{parameter.name: parameter.default}), expected)
+
+    def test_options_have_their_effect(self):
+        """What each of these options changes is what the call returns or writes."""
+        box = clearway.Box((0, -1, -1), (3, 1, 1))
+        effects = {
+            "convert": {"scale": 0.5, "cell_points": 64, "regular_size": 2.0, "unit": "ft",
+                        "columns": ["3", "2", "1"], "near": "path.txt", "within": 1.0},
+            "search": {"shard": (1, 2)},
+            "Query": {"first_pose": True, "clearance": 0.5, "profile": 0.5, "floor": 0.05, "depth": True,
+                      "between_poses": True, "error_scan": 0.01, "error_registration": 0.02,
+                      "error_pose": 0.03, "error_angle": 1, "error_model": 0.04, "ignore_boxes": [box]},
+            "read_trajectory": {"lever_arm": (0, 0, 1)},
+            "read_alignment": {"station_from": 3, "station_to": 5, "step": 2, "reverse": True, "order": "en"},
+            "read_line": {"step": 2, "reverse": True, "unit": "ft"},
+            "read_model": {"unit": "ft", "forward": "-x", "up": "-z"},
+            "read_model_points": {"unit": "ft", "forward": "-x", "up": "-z"},
+            "read_outline": {"unit": "ft"},
+            "read_vehicle": {"unit": "ft", "forward": "-x", "up": "-z"},
+            "follow": {"at": 0.3, "pivots": (1, -1)},
+            "smooth_trajectory": {"step": 0.5},
+            "find_conflicts": {"gap": 0.05, "min_points": 400, "split": 1, "chainage_start": 5, "forward": "-x",
+                               "up": "-z", "model": self.model},
+            "find_shifts": {"lateral": (-1, 0.5), "min_points": 400, "split": 1, "chainage_start": 5},
+            "station_table": {"every": 1, "chainage_start": 5},
+            "find_section": {"window": (-1, 1, 0, 1), "pivots": (0.5, -0.5), "cell": 0.1, "bin": 1, "margin": 0.1,
+                             "between_poses": True, "ignore_boxes": [box]},
+            "export_section": {"band": 0.5, "base": 1},
+            "write_report": {"title": "t", "project": "p", "client": "c", "author": "a", "date": "2026-03-01",
+                             "result_name": "r", "environment_name": "e", "model_name": "m",
+                             "trajectory_name": "y", "max_points": 10, "gap": 0.05, "min_points": 50, "split": 1,
+                             "chainage_start": 5, "every": 1}}
+        self.addCleanup(os.chdir, os.getcwd())
+        os.chdir(self.folder)
+        self.count = 1000
+        calls = self.calls()
+        calls["export_section"] = (calls["export_section"][0], "bands", "new")
+        calls["Query"] = (calls["search"][0], "new")
+        for name, options in effects.items():
+            call, given = getattr(clearway, name), calls[name]
+            if name == "Query":
+                call = lambda store, output, **named: clearway.search(store, self.query(**named), output)
+            usual = self.outcome(call, given)
+            for option, value in options.items():
+                named = {option: value}
+                if option in ("near", "within"):  # one needs the other
+                    named = {"near": "path.txt", "within": 1.0, **named}
+                with self.subTest(call=name, argument=option):
+                    outcome = self.outcome(call, given, **named)
+                    self.assertNotIn("Error(", outcome[0])
+                    self.assertNotEqual(outcome, usual)
 
     def test_every_default_passes_its_check(self):
         for name, made in ((n, getattr(clearway, n)) for n in clearway.__all__):
