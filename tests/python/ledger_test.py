@@ -85,8 +85,6 @@ class LedgerTest(SceneTest):
             self.found("after", worse_by=-1)
         with self.assertRaisesRegex(clearway.UsageError, "soon"):
             self.found("after", update=True, date="soon")
-        with self.assertRaisesRegex(TypeError, "^ledger: expected a clearway.Ledger"):
-            clearway.write_report(self.result, self.store, self.model, self.poses, "page.html", ledger="L.csv")
         other = self.found("before", ledger=self.folder / "other.csv", update=True).ledger
         self.found("after", ledger=None, store=None)
         with self.assertRaisesRegex(clearway.UsageError, "^ledger: it judges 2 conflicts, and the result has 1"):

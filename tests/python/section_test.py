@@ -188,15 +188,6 @@ class Sections(SceneTest):
                        cwd=self.folder, check=True, capture_output=True)
         self.assertEqual((self.folder / "section.h5").read_bytes(),
                          (self.folder / "other.h5").read_bytes())
-        section = clearway.Section(self.folder / "section.h5")
-        for table in ("bands", "stations", "boxes", "cells", "bin-cells"):
-            clearway.export_section(section, table, self.folder / "a.csv", band=0.2, base=-0.2,
-                                    overwrite=True)
-            subprocess.run([PROGRAM, "section", "export", "section.h5", "--table", table, "--band",
-                            "0.2", "--base=-0.2", "-o", "b.csv", "--force"], cwd=self.folder,
-                           check=True, capture_output=True)
-            self.assertEqual((self.folder / "a.csv").read_bytes(),
-                             (self.folder / "b.csv").read_bytes())
         section = self.section(ignore_boxes=[MIDDLE])
         clearway.export_section_outline(section, self.folder / "a.dxf", band=0.2, base=-0.4)
         self.assertIn("POLYLINE", (self.folder / "a.dxf").read_text())
@@ -236,8 +227,6 @@ class Sections(SceneTest):
                 (clearway.UsageError, "is an input too",
                  lambda: find(store, self.poses, self.folder / "site.h5", -1, 1, overwrite=True)),
                 (clearway.InputError, "is not a section", lambda: clearway.Section(store.path)),
-                (TypeError, "^section: expected a clearway.Section",
-                 lambda: clearway.export_section(store, "bands", no)),
                 (clearway.UsageError, "^table 'rows': expected one of bands",
                  lambda: clearway.export_section(section, "rows", no)),
                 (clearway.UsageError, "is an input too",
