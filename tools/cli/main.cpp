@@ -26,8 +26,9 @@ void add_commands(CLI::App& program, int& exit_code) {
   add_scene(program);
   add_trajectory(program);
   add_campaign(program, exit_code);
-  program.add_subcommand("bench")->group("")->prefix_command()->callback(
-      [] { throw UsageError("bench: the experiments are the program clearway-bench"); });
+  program.add_subcommand("bench")->group("")->prefix_command()->callback([] {
+    throw UsageError("bench: the experiments are tools/experiments.py, with clearway-bench");
+  });
 }
 
 }  // namespace
