@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "clearway/alignment.hpp"
 #include "clearway/error.hpp"
@@ -10,29 +9,25 @@
 #include "support/compare.hpp"
 #include "support/land_xml.hpp"
 #include "support/reader_fixture.hpp"
+#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-std::string refusal_of_text(const ScratchFolder& scratch, const std::string& text) {
+/// "read", or the message with which the text is refused.
+std::string refusal_of_text(const std::string& text) {
+  const ScratchFolder scratch;
   try {
-    const auto poses = read_alignment(scratch.write("a.xml", text), {.step = 10});
-    for (const Pose& pose : poses) {
+    for (const Pose& pose : read_alignment(scratch.write("a.xml", text), {.step = 10})) {
       for (const double number : pose.translation) REQUIRE(std::isfinite(number));
       for (const double number : pose.rotation) REQUIRE(std::isfinite(number));
     }
-  } catch (const InputError& error) {
+  } catch (const Error& error) {
     return error.what();
-  } catch (const UsageError& error) {
-    return std::string("usage: ") + error.what();
   }
   return "read";
-}
-
-std::string refusal_of_text(const std::string& text) {
-  return refusal_of_text(ScratchFolder(), text);
 }
 
 /// The text with the first `what` in it replaced.
@@ -44,7 +39,6 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 
 std::string repeated(const std::string& text, std::size_t times) {
   std::string all;
-  all.reserve(text.size() * times);
   for (std::size_t i = 0; i < times; ++i) all += text;
   return all;
 }
@@ -58,23 +52,20 @@ std::string refusal_with(const std::string& what, const std::string& with) {
 }  // namespace
 
 TEST_CASE("an alignment that is cut anywhere is refused") {
-  const ScratchFolder scratch;
   const std::size_t end = kGood.rfind('>');
   for (std::size_t bytes = 0; bytes < end; bytes += 7) {
-    const std::string refusal = refusal_of_text(scratch, kGood.substr(0, bytes));
-    check_says(refusal, "line ... malformed");
+    check_says(refusal_of_text(kGood.substr(0, bytes)), "line ... malformed");
   }
-  check_equal(refusal_of_text(scratch, kGood.substr(0, end + 1)), "read");
+  check_equal(refusal_of_text(kGood.substr(0, end + 1)), "read");
 }
 
 TEST_CASE("any byte of an alignment may be another one") {
-  const ScratchFolder scratch;
   std::size_t read = 0, refused = 0;
   for (std::size_t i = 0; i < kGood.size(); i += 3) {
     for (const char c : {'<', '"', '9', '\0', '-'}) {
       std::string text = kGood;
       text[i] = c;
-      (refusal_of_text(scratch, text) == "read" ? read : refused) += 1;
+      (refusal_of_text(text) == "read" ? read : refused) += 1;
     }
   }
   CHECK(read > 100);
@@ -82,25 +73,65 @@ TEST_CASE("any byte of an alignment may be another one") {
 }
 
 TEST_CASE("what is no LandXML is refused by what it is") {
-  check_says(refusal_of_text(""), "malformed");
-  check_says(refusal_of_text("x y z\n1 2 3\n"), "malformed");
-  check_says(refusal_of_text("<html><body/></html>"), "\"html\" ... expected LandXML");
-  check_says(refusal_of_text("<LandXML/>"), "has no Units");
-  check_says(refusal_of_text("<LandXML><Units/></LandXML>"), "neither Metric nor Imperial");
-  check_says(refusal_with("<Metric", "<Imperial linearUnit=\"foot\"/><Metric"),
-             "both Metric and Imperial");
-  check_says(refusal_with("linearUnit=\"meter\"", ""), "no attribute linearUnit");
-  check_says(refusal_with("\"meter\"", "\"cubit\""), "linearUnit=\"cubit\" ... USSurveyFoot");
-  check_says(refusal_with("\"meter\"", "\"foot\""), "linearUnit=\"foot\"");
-  check_says(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"feet\""),
-             "elevationUnit=\"feet\" and linearUnit=\"meter\"");
-  check_says(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"ell\""), "elevationUnit=\"ell\"");
-  check_equal(refusal_with("\"meter\"", "\"meter\" elevationUnit=\"meter\""), "read");
-  check_says(refusal_of_text("<LandXML><Units><Metric linearUnit=\"meter\"/></Units></LandXML>"),
-             "holds no Alignment");
-  check_says(refusal_of_text(
-                 "<LandXML><Units><Metric linearUnit=\"meter\"/></Units><Alignments/></LandXML>"),
-             "holds no Alignment");
+  for (const auto& row : text_rows(R"(
+                                                                                      | malformed
+    x y z\n1 2 3\n                                                                     | malformed
+    <html><body/></html>                                                              | "html" ... expected LandXML
+    <LandXML/>                                                                        | has no Units
+    <LandXML><Units/></LandXML>                                                       | neither Metric nor Imperial
+    <LandXML><Units><Metric linearUnit="meter"/></Units></LandXML>                    | holds no Alignment
+    <LandXML><Units><Metric linearUnit="meter"/></Units><Alignments/></LandXML>       | holds no Alignment
+  )")) {
+    check_says(refusal_of_text(row[0]), row[1]);
+  }
+}
+
+TEST_CASE("parts of an alignment that are missing, stand twice or are no numbers are refused") {
+  // A part of the sound file, what stands for it, and the answer.
+  for (const auto& row : text_rows(R"(
+    <Metric                 | <Imperial linearUnit="foot"/><Metric          | both Metric and Imperial
+    linearUnit="meter"      |                                               | no attribute linearUnit
+    "meter"                 | "cubit"                                       | linearUnit="cubit" ... USSurveyFoot
+    "meter"                 | "foot"                                        | linearUnit="foot"
+    "meter"                 | "meter" elevationUnit="feet"                  | elevationUnit="feet" and linearUnit="meter"
+    "meter"                 | "meter" elevationUnit="ell"                   | elevationUnit="ell"
+    "meter"                 | "meter" elevationUnit="meter"                 | read
+    <Units>                 | <Units><Metric linearUnit="meter"/></Units><Units> | "Units" ... stands twice
+    <Metric                 | <Metric linearUnit="meter"/><Metric           | "Metric" ... twice
+    <Profile>               | <CoordGeom/><Profile>                         | "CoordGeom" ... twice
+    <CoordGeom>             | <CoordGeom/><Other>                           | malformed
+    staStart="1000"         |                                               | "Alignment" ... no attribute staStart
+    <Start>0 0</Start>      |                                               | "Line" ... has no Start
+    <End>0 100</End>        | <End/>                                        | "End" ... holds 0 numbers
+    <End>0 100</End>        | <End>0 100</End><End>0 100</End>              | stands twice
+    <End>0 100</End>        | <End>0 100 0 0</End>                          | more than 3 numbers
+    <End>0 100</End>        | <End>0 nan</End>                              | "End" ... finite numbers
+    <End>0 100</End>        | <End>0 1e999</End>                            | "End" ... finite numbers
+    <End>0 100</End>        | <End>0 x</End>                                | "End" ... finite numbers
+    length="100"            | length="100" length="100"                     | the attribute length twice
+    length="100"            | length="nan"                                  | "Line" ... length="nan"
+    length="100"            | length="1e999"                                | "Line" ... length="1e999"
+    length="100"            | length="0x10"                                 | "Line" ... length="0x10"
+    length="100"            | length="1,5"                                  | "Line" ... length="1,5"
+    length="100"            | length=""                                     | "Line" ... length=""
+    length="100"            | length="1 2"                                  | "Line" ... length="1 2"
+    radius="50"             | radius="x"                                    | "Curve"
+    radius="50"             | radius="1e-320"                               | full circle
+    radius="50"             | radius="0"                                    | the radius 0 m
+    1200 12                 | 1000.0001 1e308                               | no finite pose
+    1200 12                 | 1200 1e300                                    | read
+    1200 12                 | 1e308 12                                      | read
+  )")) {
+    const RowName name(row[1]);
+    check_says(refusal_with(row[0], row[1]), row[2]);
+  }
+  LandFile empty;
+  empty.line = empty.curve = "";
+  check_says(refusal_of_text(empty.text()), "\"CoordGeom\" ... no element with a length");
+  // Finite numbers whose sums and products are not.
+  check_lacks(refusal_with("<End>0 100</End>", "<End>0 1e308</End>"), "read");
+  check_lacks(refusal_with("length=\"100\"", "length=\"1e308\""), "read");
+  check_lacks(refusal_with("staStart=\"1000\"", "staStart=\"1e308\""), "read");
 }
 
 TEST_CASE("elements with the prefix of the file's namespace are read") {
@@ -118,9 +149,9 @@ TEST_CASE("elements with the prefix of the file's namespace are read") {
   };
   const std::string own = "xmlns:lx=\"" + space + "\"", other = "xmlns:x=\"urn:other\"";
   const std::string root = "<lx:LandXML";
-  check_equal(refusal_of_text(declared(prefixed, root, own)), "read");
-  check_equal(refusal_of_text(declared(prefixed, root, own + " " + other)), "read");
-  check_equal(refusal_of_text(declared(prefixed, root, other)), "read");
+  for (const std::string& names : {own, own + " " + other, other}) {
+    check_equal(refusal_of_text(declared(prefixed, root, names)), "read");
+  }
   check_equal(refusal_of_text(declared(kGood, "<LandXML", "xmlns=\"" + space + "\" " + other)),
               "read");
   // A part may have a prefix where the rest has none.
@@ -134,51 +165,6 @@ TEST_CASE("elements with the prefix of the file's namespace are read") {
   const std::string wrong =
       replaced(declared(prefixed, root, own), "length=\"100\"", "length=\"a\"");
   check_says(refusal_of_text(wrong), "line 7: XML element \"Line\"");
-}
-
-TEST_CASE("what may stand once is refused where it stands twice") {
-  const std::string metric = R"(<Metric linearUnit="meter"/>)";
-  check_says(refusal_with("<Units>", "<Units>" + metric + "</Units><Units>"),
-             "\"Units\" ... stands twice");
-  check_says(refusal_with(metric, metric + metric), "\"Metric\" ... twice");
-  check_says(refusal_with("<Profile>", "<CoordGeom/><Profile>"), "\"CoordGeom\" ... twice");
-}
-
-TEST_CASE("empty lists and missing parts are refused by name") {
-  check_says(refusal_with("<CoordGeom>", "<CoordGeom/><Other>"), "malformed");
-  LandFile empty;
-  empty.line = empty.curve = "";
-  check_says(refusal_of_text(empty.text()), "\"CoordGeom\" ... no element with a length");
-  check_says(refusal_with("staStart=\"1000\"", ""), "\"Alignment\" ... no attribute staStart");
-  check_says(refusal_with("<Start>0 0</Start>", ""), "\"Line\" ... has no Start");
-  check_says(refusal_with("<End>0 100</End>", "<End/>"), "\"End\" ... holds 0 numbers");
-  check_says(refusal_with("<End>0 100</End>", "<End>0 100</End><End>0 100</End>"), "stands twice");
-  check_says(refusal_with("<End>0 100</End>", "<End>0 100 0 0</End>"), "more than 3 numbers");
-  check_says(refusal_with("length=\"100\"", "length=\"100\" length=\"100\""),
-             "the attribute length twice");
-  check_says(refusal_with("</CoordGeom>", "</CoordGeom><CoordGeom/>"), "stands twice");
-}
-
-TEST_CASE("numbers that are none, or too large, are refused") {
-  for (const char* number : {"nan", "inf", "-inf", "1e999", "0x10", "1,5", "", "1 2"}) {
-    const std::string length = "length=\"" + std::string(number) + "\"";
-    check_says(refusal_with("length=\"100\"", length), std::string("\"Line\" ... ") + length);
-  }
-  for (const char* number : {"nan", "inf", "1e999", "x"}) {
-    check_says(refusal_with("<End>0 100</End>", "<End>0 " + std::string(number) + "</End>"),
-               "\"End\" ... finite numbers");
-    check_says(refusal_with("radius=\"50\"", "radius=\"" + std::string(number) + "\""),
-               "\"Curve\"");
-  }
-  // Finite ones whose sums and products are not.
-  check_lacks(refusal_with("<End>0 100</End>", "<End>0 1e308</End>"), "read");
-  check_lacks(refusal_with("length=\"100\"", "length=\"1e308\""), "read");
-  check_says(refusal_with("radius=\"50\"", "radius=\"1e-320\""), "full circle");
-  check_says(refusal_with("radius=\"50\"", "radius=\"0\""), "the radius 0 m");
-  check_lacks(refusal_with("staStart=\"1000\"", "staStart=\"1e308\""), "read");
-  check_says(refusal_with("1200 12", "1000.0001 1e308"), "no finite pose");
-  check_equal(refusal_with("1200 12", "1200 1e300"), "read");
-  check_says(refusal_with("1200 12", "1e308 12"), "read");
 }
 
 TEST_CASE("entities that a document declares are not expanded") {

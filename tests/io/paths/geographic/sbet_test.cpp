@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -7,7 +8,7 @@
 #include "support/attitudes.hpp"
 #include "support/bytes/sbet_bytes.hpp"
 #include "support/catch.hpp"
-#include "support/compare.hpp"
+#include "support/made_path.hpp"
 #include "support/reader_fixture.hpp"
 
 using namespace clearway;
@@ -17,65 +18,47 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-struct Read {
-  std::vector<Pose> poses;
-  std::vector<Message> remarks;
-
+struct Read : MadePath {
   const Message* find(const std::string& code) const {
-    for (const Message& remark : remarks) {
-      if (remark.code == code) return &remark;
-    }
-    return nullptr;
+    const auto found = std::ranges::find(remarks, code, &Message::code);
+    return found == remarks.end() ? nullptr : &*found;
   }
 };
 
-Read read(const std::string& bytes, const TrajectoryOptions& options,
-          const std::string& name = "path.sbet") {
+const TrajectoryOptions kUtm32{.crs = "EPSG:32632"};
+
+Read read_sbet(const std::string& bytes, const TrajectoryOptions& options = kUtm32,
+               const std::string& name = "path.sbet") {
   const ScratchFolder scratch;
   Read result;
   result.poses = read_trajectory(scratch.write(name, bytes), options, &result.remarks);
   return result;
 }
 
-/// The message of the InputError with which the bytes are refused; fails for any other end.
-std::string refusal_of_sbet(const std::string& bytes, const TrajectoryOptions& options,
-                            const std::string& name = "path.sbet") {
-  try {
-    read(bytes, options, name);
-  } catch (const InputError& error) {
-    check_says(error.what(), name);
-    return error.what();
-  }
-  FAIL("read");
-  return {};
+void check_sbet_refused(const std::string& bytes, const std::string& words,
+                        const TrajectoryOptions& options = kUtm32,
+                        const std::string& name = "path.sbet") {
+  check_refused<InputError>([&] { read_sbet(bytes, options, name); }, name + " ... " + words);
 }
 
 /// UTM on WGS 84 by Krueger's series to n^4, which is exact to below a micrometre.
-struct Utm {
-  double easting, northing;
-};
-
-Utm utm(double latitude, double longitude, int zone) {
-  constexpr double f = 1 / 298.257223563;
-  constexpr double n = f / (2 - f);
+Vec3 utm(double latitude, double longitude, int zone) {
+  constexpr double f = 1 / 298.257223563, n = f / (2 - f);
   constexpr double kRadius = 6378137 / (1 + n) * (1 + n * n / 4 + n * n * n * n / 64);
   constexpr double kAlpha[] = {
       n / 2 - 2 * n * n / 3 + 5 * n * n * n / 16 + 41 * n * n * n * n / 180,
       13 * n * n / 48 - 3 * n * n * n / 5 + 557 * n * n * n * n / 1440,
       61 * n * n * n / 240 - 103 * n * n * n * n / 140, 49561 * n * n * n * n / 161280};
   const double l = longitude - (6 * zone - 183) * kPi / 180;
-  const double c = 2 * std::sqrt(n) / (1 + n);
-  const double s = std::sin(latitude);
+  const double c = 2 * std::sqrt(n) / (1 + n), s = std::sin(latitude);
   const double t = std::sinh(std::atanh(s) - c * std::atanh(c * s));
-  const double xi = std::atan2(t, std::cos(l));
-  const double eta = std::atanh(std::sin(l) / std::sqrt(1 + t * t));
-  double east = eta;
-  double north = xi;
+  const double xi = std::atan2(t, std::cos(l)), eta = std::atanh(std::sin(l) / std::hypot(1, t));
+  double east = eta, north = xi;
   for (int j = 1; j <= 4; ++j) {
     east += kAlpha[j - 1] * std::cos(2 * j * xi) * std::sinh(2 * j * eta);
     north += kAlpha[j - 1] * std::sin(2 * j * xi) * std::cosh(2 * j * eta);
   }
-  return {500000 + 0.9996 * kRadius * east, 0.9996 * kRadius * north};
+  return {500000 + 0.9996 * kRadius * east, 0.9996 * kRadius * north, 0};
 }
 
 /// The angle from true north clockwise to the map's north, by the classical series.
@@ -91,20 +74,13 @@ double convergence(double latitude, double longitude, int zone) {
 TEST_CASE("SBET: positions in UTM, as Krueger's series has them") {
   const SbetRecord a{.latitude = 0.85, .longitude = 0.19, .altitude = 512.25};
   const SbetRecord b{.latitude = 0.8500001, .longitude = 0.1899998, .altitude = -3};
-  const Read found = read(a.bytes() + b.bytes(), {.crs = "EPSG:32632"});
+  const Read found = read_sbet(a.bytes() + b.bytes());
   REQUIRE(found.poses.size() == 2);
-  for (int i = 0; i < 2; ++i) {
-    const SbetRecord& record = i == 0 ? a : b;
-    const Utm expected = utm(record.latitude, record.longitude, 32);
-    check_near(found.poses[i].translation[0], expected.easting, 1e-5);
-    check_near(found.poses[i].translation[1], expected.northing, 1e-5);
-    CHECK(found.poses[i].translation[2] == record.altitude);
-  }
-  REQUIRE(found.find("map-projection"));
-  check_says(found.find("map-projection")->text, "UTM zone 32N");
-  REQUIRE(found.find("ellipsoidal-heights"));
-  CHECK(found.find("ellipsoidal-heights")->severity == Message::Severity::kWarning);
-  CHECK(found.find("datum-accuracy") == nullptr);
+  check_near(found.poses[0].position(), utm(0.85, 0.19, 32) + Vec3{0, 0, 512.25}, 1e-5);
+  check_near(found.poses[1].position(), utm(0.8500001, 0.1899998, 32) + Vec3{0, 0, -3}, 1e-5);
+  check_equal(found.poses[0].translation[2], 512.25);
+  check_equal(found.codes(), "note map-projection, ellipsoidal-heights, note model-frame");
+  check_says(found.text(), "UTM zone 32N");
 }
 
 TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
@@ -114,7 +90,7 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
     record.pitch = 0.2 * std::cos(3.0 * i);
     record.heading = std::remainder(0.7 * i, 2 * kPi);
     record.wander = 0.4 * std::cos(i);
-    const Read found = read(record.bytes(), {.crs = "EPSG:32632"});
+    const Read found = read_sbet(record.bytes());
     const double on_map =
         record.heading - record.wander - convergence(record.latitude, record.longitude, 32);
     const Rotation expected = navigation_rotation(record.roll, record.pitch, on_map);
@@ -123,115 +99,97 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
   // East of the central meridian the map's north lies to the east of true north.
   CHECK(convergence(record.latitude, record.longitude, 32) > 0.02);
   record = {.latitude = 0.85, .longitude = 0.19, .heading = kPi / 2};
-  const Pose pose = read(record.bytes(), {.crs = "EPSG:32632"}).poses.at(0);
+  const Pose pose = read_sbet(record.bytes()).poses.at(0);
   CHECK(pose.rotation[3] > 0.02);  // so the way to true east climbs on the map
 }
 
 TEST_CASE("SBET: the CRS of the environment serves where none is named") {
   const std::string bytes = SbetRecord().bytes();
-  check_says(refusal_of_sbet(bytes, {}), "expected the projected coordinate reference system");
+  check_sbet_refused(bytes, "expected the projected coordinate reference system", {});
   const std::string wkt =
-      "PROJCS[\"local\",GEOGCS[\"WGS 84\",DATUM[\"WGS_1984\",SPHEROID[\"WGS "
-      "84\",6378137,298.257223563]],PRIMEM[\"Greenwich\",0],UNIT[\"degree\",0.0174532925199433]],"
-      "PROJECTION[\"Transverse_Mercator\"],PARAMETER[\"latitude_of_origin\",0],PARAMETER[\"central_"
-      "meridian\",9],PARAMETER[\"scale_factor\",0.9996],PARAMETER[\"false_easting\",500000],"
-      "PARAMETER[\"false_northing\",0],UNIT[\"metre\",1]";
-  const Read found = read(bytes, {.default_crs = wkt + "]"});
-  const Utm expected = utm(0.9, 0.15, 32);
-  check_near(found.poses.at(0).translation[0], expected.easting, 1e-5);
-  check_near(found.poses.at(0).translation[1], expected.northing, 1e-5);
+      R"(PROJCS["local",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],UNIT["metre",1])";
+  const Read found = read_sbet(bytes, {.default_crs = wkt + "]"});
+  check_near(found.poses.at(0).position(), utm(0.9, 0.15, 32) + Vec3{0, 0, 107.5}, 1e-5);
   check_says(found.find("map-projection")->text, "as the environment");
   const std::string files = wkt + ",EXTENSION[\"PROJ4\",\"+proj=utm +nadgrids=/etc/passwd\"]]";
-  check_says(refusal_of_sbet(bytes, {.default_crs = files}), "not opened");
-  CHECK(read(bytes, {.default_crs = "+proj=utm +zone=32 +datum=WGS84"}).poses ==
-        read(bytes, {.crs = "EPSG:32632"}).poses);
-  check_says(refusal_of_sbet(bytes, {.default_crs = "hello"}), "does not know");
-  check_says(refusal_of_sbet(bytes, {.default_crs = "GEOGCS[\"a\"]"}), "environment");
-}
-
-TEST_CASE("a CRS that cannot be used is refused with what was expected") {
-  const std::string bytes = SbetRecord().bytes();
+  check_sbet_refused(bytes, "not opened", {.default_crs = files});
+  check_sbet_refused(bytes, "does not know", {.default_crs = "hello"});
+  check_sbet_refused(bytes, "environment", {.default_crs = "GEOGCS[\"a\"]"});
+  const std::string proj = "+proj=utm +zone=32 +datum=WGS84";
+  CHECK(read_sbet(bytes, {.default_crs = proj}).poses == read_sbet(bytes).poses);
+  CHECK(read_sbet(bytes, {.crs = proj}).poses == read_sbet(bytes).poses);
   for (const char* crs : {"EPSG:0", "hello", "EPSG:4326", "EPSG:4979", "EPSG:4978", "+proj=utm"}) {
-    INFO(crs);
-    CHECK_THROWS_AS(read(bytes, {.crs = crs}), UsageError);
+    const RowName name(crs);
+    CHECK_THROWS_AS(read_sbet(bytes, {.crs = crs}), UsageError);
   }
-  CHECK_THROWS_AS(read(bytes, {.crs = "EPSG:32632", .datum = "hello"}), UsageError);
-  CHECK_THROWS_AS(read(bytes, {.angle_unit = AngleUnit::kDegrees, .crs = "EPSG:32632"}),
-                  UsageError);
-  CHECK_THROWS_AS(read(bytes, {.crs = "EPSG:32632", .metres_per_unit = 0.001}), UsageError);
-  CHECK(read(bytes, {.crs = "+proj=utm +zone=32 +datum=WGS84"}).poses ==
-        read(bytes, {.crs = "EPSG:32632"}).poses);
+  for (TrajectoryOptions misuse :
+       {TrajectoryOptions{.datum = "hello"}, TrajectoryOptions{.angle_unit = AngleUnit::kDegrees},
+        TrajectoryOptions{.metres_per_unit = 0.001}}) {
+    misuse.crs = kUtm32.crs;
+    CHECK_THROWS_AS(read_sbet(bytes, misuse), UsageError);
+  }
 }
 
 TEST_CASE("heights, units and datum of a CRS are said") {
-  const SbetRecord california{.latitude = 0.57, .longitude = -2.04, .altitude = 30.48};
-  const Read feet = read(california.bytes(), {.crs = "EPSG:2230"});
+  const std::string california =
+      SbetRecord{.latitude = 0.57, .longitude = -2.04, .altitude = 30.48}.bytes();
+  const std::string germany = SbetRecord().bytes();
+  const auto severity = [](const Read& found, const char* code) {
+    const Message* const message = found.find(code);
+    return message == nullptr                              ? "none"
+           : message->severity == Message::Severity::kNote ? "note"
+                                                           : "warning";
+  };
+  const Read feet = read_sbet(california, {.crs = "EPSG:2230"});
   CHECK(feet.poses.at(0).translation[2] == Approx(30.48 * 3937 / 1200));
   CHECK(feet.find("map-unit"));
-  REQUIRE(feet.find("datum-accuracy"));
-  CHECK(feet.find("datum-accuracy")->severity == Message::Severity::kWarning);
-  const Read own = read(california.bytes(), {.crs = "EPSG:6425+ellipsoidal", .datum = "EPSG:6319"});
-  CHECK(own.find("datum-accuracy") == nullptr);
-  CHECK(own.find("ellipsoidal-heights") == nullptr);
-  const Read europe = read(SbetRecord().bytes(), {.crs = "EPSG:25832"});
-  REQUIRE(europe.find("datum-accuracy"));
-  CHECK(europe.find("datum-accuracy")->severity == Message::Severity::kNote);
-  const Read mercator = read(SbetRecord().bytes(), {.crs = "EPSG:3857"});
-  REQUIRE(mercator.find("map-scale"));
-  CHECK(mercator.find("map-scale")->severity == Message::Severity::kWarning);
+  check_equal(severity(feet, "datum-accuracy"), "warning");
+  const Read own = read_sbet(california, {.crs = "EPSG:6425+ellipsoidal", .datum = "EPSG:6319"});
+  check_equal(severity(own, "datum-accuracy"), "none");
+  check_equal(severity(own, "ellipsoidal-heights"), "none");
+  check_equal(severity(read_sbet(germany, {.crs = "EPSG:25832"}), "datum-accuracy"), "note");
+  check_equal(severity(read_sbet(germany, {.crs = "EPSG:3857"}), "map-scale"), "warning");
   // This map nearly keeps lengths along the meridian, but not along the parallel at latitude 0.9.
   const double sine = std::sin(0.9), w2 = 1 - 6.69437999014e-3 * sine * sine;
   const double along = std::sqrt(w2) / std::cos(0.9);
   const double across = std::pow(w2, 1.5) / (1 - 6.69437999014e-3);
-  const Read cylinder = read(SbetRecord().bytes(), {.crs = "EPSG:4087"});
+  const Read cylinder = read_sbet(germany, {.crs = "EPSG:4087"});
   REQUIRE(cylinder.find("map-scale"));
-  CHECK(cylinder.find("map-scale")->numbers.at(1).second == Approx(along).epsilon(1e-6));
-  CHECK(cylinder.find("map-scale")->numbers.at(2).second ==
-        Approx(std::sqrt(along * across)).epsilon(1e-6));
+  const auto& numbers = cylinder.find("map-scale")->numbers;
+  CHECK(numbers.at(1).second == Approx(along).epsilon(1e-6));
+  CHECK(numbers.at(2).second == Approx(std::sqrt(along * across)).epsilon(1e-6));
 }
 
 TEST_CASE("SBET: degrees, cut files and numbers that are none are refused") {
-  const TrajectoryOptions utm32{.crs = "EPSG:32632"};
-  SbetRecord record;
-  record.latitude = 51.5;
-  check_says(refusal_of_sbet(SbetRecord().bytes() + record.bytes(), utm32),
-             "byte 136 ... record 1 ... radians, not degrees");
-  record = {};
-  record.heading = 174.5;
-  check_says(refusal_of_sbet(record.bytes(), utm32), "heading ... not degrees");
-  record = {};
-  record.pitch = std::numeric_limits<double>::quiet_NaN();
-  check_says(refusal_of_sbet(record.bytes(), utm32), "pitch nan");
-  record = {};
-  record.altitude = std::numeric_limits<double>::infinity();
-  check_says(refusal_of_sbet(record.bytes(), utm32), "altitude inf");
-  record = {};
-  record.latitude = record.longitude = 0;
-  check_says(refusal_of_sbet(record.bytes(), utm32), "are 0");
-  record = {};
-  record.time = std::numeric_limits<double>::quiet_NaN();
-  check_says(refusal_of_sbet(record.bytes(), utm32), "time");
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const std::pair<SbetRecord, const char*> rows[] = {
+      {{.latitude = 51.5}, "byte 136 ... record 1 ... radians, not degrees"},
+      {{.heading = 174.5}, "heading ... not degrees"},
+      {{.pitch = kNan}, "pitch nan"},
+      {{.altitude = std::numeric_limits<double>::infinity()}, "altitude inf"},
+      {{.latitude = 0, .longitude = 0}, "are 0"},
+      {{.time = kNan}, "time"}};
+  for (const auto& [record, words] : rows) {
+    check_sbet_refused(SbetRecord().bytes() + record.bytes(), words);
+  }
   const std::string two = SbetRecord().bytes() + SbetRecord().bytes();
-  CHECK(read("", utm32).poses.empty());
+  CHECK(read_sbet("").poses.empty());
   for (std::size_t size = 1; size < two.size(); ++size) {
-    INFO(size);
-    if (size == 136) continue;
-    check_says(refusal_of_sbet(two.substr(0, size), utm32), "behind the last whole record of 136");
+    CAPTURE(size);
+    if (size != 136) check_sbet_refused(two.substr(0, size), "behind the last whole record of 136");
   }
 }
 
 TEST_CASE("SBET is known by its ending, or by .out and its bytes") {
   const std::string bytes = SbetRecord().bytes();
-  const TrajectoryOptions utm32{.crs = "EPSG:32632"};
-  check_equal(read(bytes, utm32, "path.out").poses.size(), 1);
-  check_equal(read(bytes, utm32, "path.SBET").poses.size(), 1);
-  check_equal(read("1 0 0 0 0 1 0 0 0 0 1 0\n", {}, "path.out").poses.size(), 1);
-  check_says(refusal_of_sbet(bytes, utm32, "path.bin"), "may be an SBET");
-  TrajectoryOptions named = utm32;
+  check_equal(read_sbet(bytes, kUtm32, "path.out").poses.size(), 1);
+  check_equal(read_sbet(bytes, kUtm32, "path.SBET").poses.size(), 1);
+  check_equal(read_sbet("1 0 0 0 0 1 0 0 0 0 1 0\n", {}, "path.out").poses.size(), 1);
+  check_sbet_refused(bytes, "may be an SBET", kUtm32, "path.bin");
+  TrajectoryOptions named = kUtm32;
   named.format = TrajectoryFormat::kSbet;
-  check_equal(read(bytes, named, "path.bin").poses.size(), 1);
-  const SbetRecord early{.time = 10};
-  const SbetRecord late{.time = 20};
-  CHECK(read(early.bytes() + late.bytes(), utm32).find("time-order") == nullptr);
-  CHECK(read(late.bytes() + early.bytes(), utm32).find("time-order"));
+  check_equal(read_sbet(bytes, named, "path.bin").poses.size(), 1);
+  const SbetRecord early{.time = 10}, late{.time = 20};
+  CHECK(read_sbet(early.bytes() + late.bytes()).find("time-order") == nullptr);
+  CHECK(read_sbet(late.bytes() + early.bytes()).find("time-order"));
 }

@@ -5,8 +5,9 @@
 #include "clearway/trajectory.hpp"
 #include "support/attitudes.hpp"
 #include "support/catch.hpp"
-#include "support/compare.hpp"
+#include "support/made_path.hpp"
 #include "support/reader_fixture.hpp"
+#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -15,148 +16,139 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-std::vector<Pose> poses_of_table(const std::string& text, const TrajectoryOptions& options = {},
-                                 std::vector<Message>* remarks = nullptr) {
+MadePath made_of_table(const std::string& text, const TrajectoryOptions& options = {}) {
   const ScratchFolder scratch;
-  return read_trajectory(scratch.write("path.csv", text), options, remarks);
+  MadePath made;
+  made.poses = read_trajectory(scratch.write("path.csv", text), options, &made.remarks);
+  return made;
 }
 
-std::string refusal_of_table(const std::string& text, const TrajectoryOptions& options = {},
-                             Remedy remedy = Remedy::kNone) {
-  try {
-    poses_of_table(text, options);
-  } catch (const InputError& error) {
-    CHECK(error.remedy() == remedy);
-    return error.what();
+Pose pose_of_table(const std::string& text, const TrajectoryOptions& options = {}) {
+  return made_of_table(text, options).poses.at(0);
+}
+
+/// Rows of a table's text and words of the refusal, all with one remedy.
+void check_tables_refused(std::string_view table, const TrajectoryOptions& options = {},
+                          Remedy remedy = Remedy::kNone) {
+  for (const auto& row : text_rows(table)) {
+    const RowName name(row[0]);
+    try {
+      made_of_table(row[0], options);
+      fail_check("nothing was refused");
+    } catch (const InputError& error) {
+      check_says(error.what(), row[1]);
+      CHECK(error.remedy() == remedy);
+    }
   }
-  FAIL("read");
-  return {};
 }
 
-void check_navigation(const std::vector<Pose>& poses) {
-  REQUIRE(poses.size() == 1);
-  const Rotation expected = navigation_rotation(3 * kDegree, -4 * kDegree, 100 * kDegree);
-  CHECK(greatest_difference(expected, poses[0].rotation) < 1e-15);
-  check_equal(poses[0].translation[0], 1);
-  check_equal(poses[0].translation[1], 2);
-  check_equal(poses[0].translation[2], 3);
+void check_turn(const Pose& pose, const Rotation& expected) {
+  CHECK(greatest_difference(expected, pose.rotation) < 1e-15);
 }
+
+const std::string kHead = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
+const TrajectoryOptions kUtm32{.crs = "EPSG:32632"};
 
 }  // namespace
 
 TEST_CASE("a table with roll, pitch and heading, its unit in the header") {
-  check_navigation(poses_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
-  check_navigation(
-      poses_of_table("x,y,z,Roll[deg],Pitch [Deg],Heading (degrees)\n1,2,3,3,-4,100\n"));
-  check_navigation(poses_of_table("x y z roll [deg] pitch [deg] heading [deg]\n1 2 3 3 -4 100\n"));
-  check_navigation(
-      poses_of_table("# time;height;northing;easting;azimuth_deg;pitch_deg;roll_deg\n"
-                     "7;3;2;1;100;-4;3\n"));
-  check_navigation(poses_of_table("// x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n"));
-  check_navigation(poses_of_table("Easting,Northing,Height,Roll,Pitch,Heading\n1,2,3,3,-4,100\n",
-                                  {.angle_unit = AngleUnit::kDegrees}));
-  check_navigation(
-      poses_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n"
-                     "1,2,3,0.052359877559829886,-0.069813170079773182,"
-                     "1.7453292519943295\n"));
+  const auto check = [](const std::string& text, const TrajectoryOptions& options = {}) {
+    const RowName name(text);
+    const Pose pose = pose_of_table(text, options);
+    check_turn(pose, navigation_rotation(3 * kDegree, -4 * kDegree, 100 * kDegree));
+    CHECK(pose.position() == Vec3{1, 2, 3});
+  };
+  for (const auto& row : text_rows(R"(
+    x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n
+    x,y,z,Roll[deg],Pitch [Deg],Heading (degrees)\n1,2,3,3,-4,100\n
+    x y z roll [deg] pitch [deg] heading [deg]\n1 2 3 3 -4 100\n
+    # time;height;northing;easting;azimuth_deg;pitch_deg;roll_deg\n7;3;2;1;100;-4;3\n
+    // x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,3,-4,100\n
+    x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,0.052359877559829886,-0.069813170079773182,1.7453292519943295\n
+  )")) {
+    check(row[0]);
+  }
+  check("Easting,Northing,Height,Roll,Pitch,Heading\n1,2,3,3,-4,100\n",
+        {.angle_unit = AngleUnit::kDegrees});
 }
 
 TEST_CASE("each angle turns the way that its convention says") {
   // Angles are positive for right wing down, nose up, and clockwise from north.
-  const std::string head = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
-  const Pose rolled = poses_of_table(head + "0,0,0,10,0,0\n").at(0);
-  CHECK(rolled.rotation[7] > 0.1);  // y, which is left, goes up
-  CHECK(poses_of_table(head + "0,0,0,0,10,0\n").at(0).rotation[6] > 0.1);  // x goes up
-  const Pose north = poses_of_table(head + "0,0,0,0,0,0\n").at(0);
-  CHECK(north.rotation[3] == Approx(1));
-  const Pose east = poses_of_table(head + "0,0,0,0,0,90\n").at(0);
-  CHECK(east.rotation[0] == Approx(1));
-
+  CHECK(pose_of_table(kHead + "0,0,0,10,0,0\n").rotation[7] > 0.1);  // y, which is left, goes up
+  CHECK(pose_of_table(kHead + "0,0,0,0,10,0\n").rotation[6] > 0.1);  // x goes up
+  CHECK(pose_of_table(kHead + "0,0,0,0,0,0\n").rotation[3] == Approx(1));
+  CHECK(pose_of_table(kHead + "0,0,0,0,0,90\n").rotation[0] == Approx(1));
   const std::string robot = "x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,5,6,70\n";
-  const Pose enu = poses_of_table(robot, {.angle_frame = AngleFrame::kEnu}).at(0);
-  const Rotation expected = about_z(70 * kDegree) * about_y(6 * kDegree) * about_x(5 * kDegree);
-  CHECK(greatest_difference(expected, enu.rotation) < 1e-15);
-  CHECK(enu.rotation[6] < 0);  // nose down
-  const Pose ned = poses_of_table(robot, {.angle_frame = AngleFrame::kNed}).at(0);
-  CHECK(greatest_difference(navigation_rotation(5 * kDegree, 6 * kDegree, 70 * kDegree),
-                            ned.rotation) < 1e-15);
+  check_turn(pose_of_table(robot, {.angle_frame = AngleFrame::kEnu}),
+             about_z(70 * kDegree) * about_y(6 * kDegree) * about_x(5 * kDegree));
+  check_turn(pose_of_table(robot, {.angle_frame = AngleFrame::kNed}),
+             navigation_rotation(5 * kDegree, 6 * kDegree, 70 * kDegree));
 }
 
 TEST_CASE("angles whose unit or frame is not sure are refused") {
-  const std::string head = "x,y,z,roll,pitch,heading\n";
-  check_says(refusal_of_table(head + "1,2,3,0,0,1.5\n", {}, Remedy::kDeclareAngles),
-             "degrees or radians");
-  check_says(refusal_of_table(head + "1,2,3,0,0,60\n", {}, Remedy::kDeclareAngles), "up to 60");
-  std::vector<Message> remarks;
-  CHECK(poses_of_table(head + "1,2,3,0,0,359\n", {}, &remarks).at(0).rotation[3] > 0.99);
-  CHECK(
-      std::ranges::any_of(remarks, [](const Message& m) { return m.code == "angles-in-degrees"; }));
-  CHECK(poses_of_table(head + "1,2,3,7,0,3\n").at(0).rotation[7] >
-        0.1);  // a roll of 7 is no radians
-  check_says(refusal_of_table(head + "1,2,3,0,0,359\n", {.angle_unit = AngleUnit::kRadians}),
-             "look like degrees");
-  check_says(refusal_of_table("x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n"),
-             "look like degrees");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
-                              {.angle_unit = AngleUnit::kRadians}),
-             "declared to be radians");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n"),
-             "degrees and in radians");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n"), "all or none");
-  check_says(refusal_of_table("x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n"), "gon");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n", {},
-                              Remedy::kDeclareAngles),
-             "ned ... enu");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n",
-                              {.angle_frame = AngleFrame::kEnu}),
-             "column called yaw");
-  check_says(refusal_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n"),
-             "line 2 ... finite");
-  CHECK_THROWS_AS(poses_of_table("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
+  check_tables_refused(R"(
+    x,y,z,roll,pitch,heading\n1,2,3,0,0,1.5\n             | degrees or radians
+    x,y,z,roll,pitch,heading\n1,2,3,0,0,60\n              | up to 60
+    x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n       | ned ... enu
+  )",
+                       {}, Remedy::kDeclareAngles);
+  check_tables_refused(R"(
+    x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n  | look like degrees
+    x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n   | degrees and in radians
+    x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n           | all or none
+    x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n | gon
+    x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n | line 2 ... finite
+    x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n                  | omega
+    x,y,z,roll,pitch,yaw,heading\n                        | both heading and yaw
+    lat,lon,easting,northing,height,roll,pitch,heading\n  | both
+    lat,lon,height\n                                      | without angles
+    x,y,z,roll,pitch\n                                    | no rotation
+    lat,lon,height,qx,qy,qz,qw\n                          | roll, pitch and heading
+  )");
+  check_tables_refused(R"(
+    x,y,z,roll,pitch,heading\n1,2,3,0,0,359\n             | look like degrees
+    x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n   | declared to be radians
+  )",
+                       {.angle_unit = AngleUnit::kRadians});
+  check_tables_refused(R"(x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n | column called yaw)",
+                       {.angle_frame = AngleFrame::kEnu});
+  CHECK_THROWS_AS(made_of_table("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
                   UsageError);
-}
-
-TEST_CASE("headers that make no pose say why") {
-  check_says(refusal_of_table("x,y,z,omega,phi,kappa\n1,2,3,0,0,0\n"), "omega");
-  check_says(refusal_of_table("x,y,z,roll,pitch,yaw,heading\n"), "both heading and yaw");
-  check_says(refusal_of_table("lat,lon,easting,northing,height,roll,pitch,heading\n"), "both");
-  check_says(refusal_of_table("lat,lon,height\n"), "without angles");
-  check_says(refusal_of_table("x,y,z,roll,pitch\n"), "no rotation");
-  check_says(refusal_of_table("lat,lon,height,qx,qy,qz,qw\n"), "roll, pitch and heading");
+  const MadePath degrees = made_of_table("x,y,z,roll,pitch,heading\n1,2,3,0,0,359\n");
+  CHECK(degrees.poses.at(0).rotation[3] > 0.99);
+  check_says(degrees.codes(), "angles-in-degrees");
+  // A roll of 7 is no radians.
+  CHECK(pose_of_table("x,y,z,roll,pitch,heading\n1,2,3,7,0,3\n").rotation[7] > 0.1);
 }
 
 TEST_CASE("latitude and longitude in a table") {
-  const TrajectoryOptions utm32{.crs = "EPSG:32632"};
-  const std::string head = "lat,lon,height,roll_deg,pitch_deg,heading_deg\n";
   // On the central meridian the map's north is true north; values from Krueger's series.
-  const auto check = [](const std::vector<Pose>& poses) {
-    REQUIRE(poses.size() == 1);
-    check_near(poses[0].translation[0], 500000, 1e-6);
-    CHECK(poses[0].translation[1] == Approx(5316300.2245).margin(1e-3));
-    check_equal(poses[0].translation[2], 12.5);
-    CHECK(poses[0].rotation[0] == Approx(1));
-  };
-  check(poses_of_table(head + "48,9,12.5,0,0,90\n", utm32));
-  check(
-      poses_of_table("lon_rad,lat_rad,alt_m,roll_deg,pitch_deg,heading_deg\n"
-                     "0.15707963267948966,0.83775804095727813,12.5,0,0,90\n",
-                     utm32));
+  for (const auto& row : text_rows(R"(
+    lat,lon,height,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n
+    lon_rad,lat_rad,alt_m,roll_deg,pitch_deg,heading_deg\n0.15707963267948966,0.83775804095727813,12.5,0,0,90\n
+  )")) {
+    const Pose pose = pose_of_table(row[0], kUtm32);
+    check_near(pose.translation[0], 500000, 1e-6);
+    check_near(pose.translation[1], 5316300.2245, 1e-3);
+    check_equal(pose.translation[2], 12.5);
+    CHECK(pose.rotation[0] == Approx(1));
+  }
   // A yaw from true east turns with the map as a heading from true north does.
-  TrajectoryOptions yaw = utm32;
+  TrajectoryOptions yaw = kUtm32;
   yaw.angle_frame = AngleFrame::kEnu;
-  const Pose a =
-      poses_of_table("lat,lon,z,roll_deg,pitch_deg,yaw_deg\n48,11,0,2,-3,20\n", yaw).at(0);
-  const Pose b = poses_of_table(head + "48,11,0,2,3,70\n", utm32).at(0);
-  for (int k = 0; k < 9; ++k) CHECK(a.rotation[k] == Approx(b.rotation[k]).margin(1e-12));
-
-  check_says(refusal_of_table(head + "48,9,12.5,0,0,90\n", {}, Remedy::kNameCrs),
-             "coordinate reference system");
-  check_says(refusal_of_table(head + "1,0.5,12.5,0,0,90\n", utm32, Remedy::kDeclareAngles),
-             "lat_deg");
-  check_says(refusal_of_table(head + "98,9,12.5,0,0,90\n", utm32), "within 90 degrees");
-  check_says(refusal_of_table(
-                 "lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n", utm32),
-             "look like degrees");
-  CHECK_THROWS_AS(poses_of_table("x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n", utm32),
-                  UsageError);
+  const Pose a = pose_of_table("lat,lon,z,roll_deg,pitch_deg,yaw_deg\n48,11,0,2,-3,20\n", yaw);
+  const Pose b =
+      pose_of_table("lat,lon,height,roll_deg,pitch_deg,heading_deg\n48,11,0,2,3,70\n", kUtm32);
+  for (int k = 0; k < 9; ++k) check_near(a.rotation[k], b.rotation[k], 1e-12);
+  const std::string_view unnamed =
+      R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | coordinate reference system)";
+  check_tables_refused(unnamed, {}, Remedy::kNameCrs);
+  check_tables_refused(R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n1,0.5,9,0,0,90\n | lat_deg)",
+                       kUtm32, Remedy::kDeclareAngles);
+  check_tables_refused(R"(
+    lat,lon,z,roll_deg,pitch_deg,heading_deg\n98,9,12.5,0,0,90\n         | within 90 degrees
+    lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | look like degrees
+  )",
+                       kUtm32);
+  CHECK_THROWS_AS(made_of_table(kHead + "1,2,3,0,0,0\n", kUtm32), UsageError);
 }

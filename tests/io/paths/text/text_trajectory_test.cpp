@@ -33,50 +33,22 @@ std::string rows(std::size_t from, std::size_t to, const std::string& behind = "
   return text;
 }
 
-std::vector<Pose> expected() {
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < kPoses; ++i) poses.push_back(pose_of(i));
-  return poses;
-}
-
-std::string refusal_of_text(const std::string& text) {
+std::vector<Pose> read(const std::string& text, std::vector<Message>* remarks = nullptr) {
   const ScratchFolder scratch;
-  try {
-    read_trajectory(scratch.write("path.txt", text));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+  return read_trajectory(scratch.write("path.txt", text), {}, remarks);
 }
 
 }  // namespace
 
-TEST_CASE("XML is refused with the command that makes a trajectory of it") {
-  const ScratchFolder scratch;
-  for (const char* text : {"<?xml version=\"1.0\"?>\n<LandXML/>\n", "\xEF\xBB\xBF<LandXML>\n"}) {
-    check_refused([&] { return read_trajectory(scratch.write("a.xml", text)); },
-                  "is XML ... clearway trajectory alignment");
-  }
-}
-
-TEST_CASE("a line is refused with the command that makes a trajectory of it") {
-  const ScratchFolder scratch;
-  for (const char* text : {"x,y,z\n1,2,3\n4,5,6\n", "{\"type\": \"LineString\"}\n"}) {
-    check_refused([&] { return read_trajectory(scratch.write("a", text)); },
-                  "clearway trajectory line");
-  }
-}
-
 TEST_CASE("a long trajectory has its poses in the order of its lines") {
-  const ScratchFolder scratch;
-  const auto poses_of = [&](const std::string& text) {
-    return read_trajectory(scratch.write("path.txt", text));
-  };
-  CHECK((poses_of(rows(0, kPoses)) == expected()));
-  CHECK((poses_of("# one\n\n" + rows(0, 9, "\r\n") + "\n// more\n" + rows(9, 20'000, " \n") +
-                  "\n#\n" + rows(20'000, kPoses)) == expected()));
-  CHECK((poses_of(rows(0, kPoses - 1) + row_of(kPoses - 1)) == expected()));
-  CHECK((poses_of(rows(0, kPoses, " 0 0 0 1\n")) == expected()));
+  std::vector<Pose> expected;
+  for (std::size_t i = 0; i < kPoses; ++i) expected.push_back(pose_of(i));
+  for (const std::string& text :
+       {rows(0, kPoses), rows(0, kPoses - 1) + row_of(kPoses - 1), rows(0, kPoses, " 0 0 0 1\n"),
+        "# one\n\n" + rows(0, 9, "\r\n") + "\n// more\n" + rows(9, 20'000, " \n") + "\n#\n" +
+            rows(20'000, kPoses)}) {
+    CHECK((read(text) == expected));
+  }
 }
 
 TEST_CASE("a long table keeps times and names with their poses") {
@@ -91,18 +63,15 @@ TEST_CASE("a long table keeps times and names with their poses") {
   REQUIRE(poses.size() == kPoses);
   REQUIRE(labels.name.size() == kPoses);
   REQUIRE(labels.time.size() == kPoses);
-  std::size_t good = 0;
   for (std::size_t i = 0; i < kPoses; ++i) {
     const auto number = static_cast<double>(i);
     const bool same = labels.name[i] == "a, " + std::to_string(i) &&
                       labels.time[i] == number + 0.5 && poses[i].translation[0] == number;
-    good += same ? 1 : 0;
+    if (!same) FAIL("line " << i);
   }
-  CHECK(good == kPoses);
 }
 
 TEST_CASE("a long table of angles is that of its short parts") {
-  const ScratchFolder scratch;
   const std::string header = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
   const auto row = [](std::size_t i) {
     const std::string n = std::to_string(i);
@@ -111,32 +80,29 @@ TEST_CASE("a long table of angles is that of its short parts") {
   };
   std::string text = header;
   for (std::size_t i = 0; i < kPoses; ++i) text += row(i);
-  const auto poses = read_trajectory(scratch.write("a.csv", text));
+  const auto poses = read(text);
   REQUIRE(poses.size() == kPoses);
   for (const std::size_t i : {std::size_t{0}, std::size_t{12'345}, kPoses - 1}) {
-    const auto one = read_trajectory(scratch.write("b.csv", header + row(i)));
-    CHECK(poses[i] == one.at(0));
+    CHECK(poses[i] == read(header + row(i)).at(0));
   }
 }
 
 TEST_CASE("a line in the middle of a long trajectory is refused by its number") {
-  check_says(refusal_of_text("#\n" + rows(0, 25'000) + "1 0 0 x\n" + rows(0, 5'000)),
-             "line 25002:  ... expected numbers only");
-  check_says(refusal_of_text(rows(0, 25'000) + rows(0, 1, " 0 0 0 1\n") + rows(0, 5'000)),
-             "line 25001: 16 numbers; expected 12 as in the first line");
-  // The first of several faulty lines is named.
-  check_says(refusal_of_text(rows(0, 10'000) + "1 2\n" + rows(0, 9'000) + "nan\n"),
-             "line 10001: 2 numbers");
-  check_says(refusal_of_text(rows(0, 25'000) + std::string(70'000, '1') + "\n"),
-             "line 25001: is longer than 65536 bytes");
+  const std::pair<std::string, const char*> cases[] = {
+      {"#\n" + rows(0, 25'000) + "1 0 0 x\n" + rows(0, 5'000),
+       "line 25002:  ... expected numbers only"},
+      {rows(0, 25'000) + rows(0, 1, " 0 0 0 1\n") + rows(0, 5'000),
+       "line 25001: 16 numbers; expected 12 as in the first line"},
+      // The first of several faulty lines is named.
+      {rows(0, 10'000) + "1 2\n" + rows(0, 9'000) + "nan\n", "line 10001: 2 numbers"},
+      {rows(0, 25'000) + std::string(70'000, '1') + "\n",
+       "line 25001: is longer than 65536 bytes"}};
+  for (const auto& [text, words] : cases) check_refused<InputError>([&] { read(text); }, words);
 }
 
 TEST_CASE("a long trajectory that ends within a number is warned of by its last line") {
-  const ScratchFolder scratch;
   std::vector<Message> remarks;
-  const auto poses = read_trajectory(
-      scratch.write("path.txt", rows(0, 25'000) + "1 0 0 1 0 1 0 2 0 0 1 3."), {}, &remarks);
-  check_equal(poses.size(), 25'001);
+  check_equal(read(rows(0, 25'000) + "1 0 0 1 0 1 0 2 0 0 1 3.", &remarks).size(), 25'001);
   REQUIRE_FALSE(remarks.empty());
   check_equal(remarks[0].code, "cut-text");
   check_equal(remarks[0].numbers.at(0).second, 25'001);
