@@ -20,9 +20,9 @@ using Quanta = std::vector<std::array<std::int32_t, 3>>;
 
 /// Colliding points as a search could have found them.
 struct Found {
-  Quanta quanta;
-  std::vector<std::uint32_t> first_pose;  ///< empty: all 0
-  std::vector<std::uint64_t> source;      ///< empty: 0, 1, ...
+  Quanta quanta = {};
+  std::vector<std::uint32_t> first_pose = {};  ///< empty: all 0
+  std::vector<std::uint64_t> source = {};      ///< empty: 0, 1, ...
   Quantisation quantisation{{0.001, 0.001, 0.001}, {0, 0, 0}};
   std::vector<Pose> poses{translation({0, 0, 0}), translation({1, 0, 0})};
   double clearance = 0;
@@ -70,11 +70,47 @@ struct Found {
     return out;
   }
 
-  Result write(const ScratchFolder& folder, const std::string& name = "out.h5") const {
-    write_result(folder / name, header(), rows(), 1000, clearances);
-    return Result(folder / name);
+  Result write(const ScratchFolder& folder) const {
+    write_result(folder / "out.h5", header(), rows(), 1000, clearances);
+    return Result(folder / "out.h5");
+  }
+
+  Conflicts conflicts(const ConflictOptions& options = {},
+                      std::vector<std::uint32_t>* conflict_of = nullptr) const {
+    const ScratchFolder folder;
+    return find_conflicts(write(folder), poses, options, conflict_of);
+  }
+
+  /// Of all points, however few.
+  Conflict first_conflict(ConflictOptions options = {}) const {
+    options.min_points = 1;
+    return conflicts(options).listed.at(0);
+  }
+
+  /// Gives some sources clearances, of which all lie at one place.
+  void clear(std::vector<std::uint64_t> sources, std::vector<double> distances,
+             std::vector<std::uint32_t> at_poses) {
+    clearances.source = std::move(sources);
+    clearances.distance = std::move(distances);
+    clearances.pose = std::move(at_poses);
+    clearances.xyz.resize(clearances.source.size(), rows().xyz[0]);
   }
 };
+
+inline std::array<std::int32_t, 3> millimetres(const Vec3& p) {
+  std::array<std::int32_t, 3> out{};
+  for (int k = 0; k < 3; ++k) {
+    out[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
+  }
+  return out;
+}
+
+/// One point at a place that is no multiple of the steps, first touched at one pose.
+inline Found one_point(const Vec3& at, const Pose& pose) {
+  Found found{.quanta = {{0, 0, 0}}, .poses = {pose}};
+  for (int k = 0; k < 3; ++k) found.quantisation.offset[k] = at[k];
+  return found;
+}
 
 /// Whether two points are neighbours by the definition, with integers of 128 bits where the scales
 /// are equal.
@@ -122,15 +158,10 @@ inline std::vector<std::size_t> all_pairs(const Found& found, double gap) {
 /// Checks conflict_of, without small groups and cuts, against all_pairs(). Returns the number of
 /// groups.
 inline std::size_t check_groups(const Found& found, double gap, int threads = 2) {
-  const ScratchFolder folder;
-  ConflictOptions options;
-  options.gap = gap;
-  options.min_points = 1;
-  options.split = 0;
+  ConflictOptions options{.gap = gap, .min_points = 1, .split = 0};
   options.threads = threads;
   std::vector<std::uint32_t> conflict_of;
-  const Conflicts conflicts =
-      find_conflicts(found.write(folder), found.poses, options, &conflict_of);
+  const Conflicts conflicts = found.conflicts(options, &conflict_of);
   const std::vector<std::size_t> group = all_pairs(found, gap);
   REQUIRE(conflict_of.size() == group.size());
   std::map<std::size_t, std::uint32_t> id_of;

@@ -11,8 +11,7 @@ namespace {
 
 /// Points every 0.1 m along x, each touched first at the pose beside it; poses every metre.
 Found rail(std::int32_t metres) {
-  Found out;
-  out.poses.clear();
+  Found out{.poses = {}};
   for (std::int32_t i = 0; i <= metres; ++i) out.poses.push_back(translation({1.0 * i, 0, 0}));
   for (std::int32_t i = 0; i < 10 * metres; ++i) {
     out.quanta.push_back({100 * i, 2000, 0});
@@ -21,25 +20,17 @@ Found rail(std::int32_t metres) {
   return out;
 }
 
-Conflicts conflicts_of(const Found& found, const ConflictOptions& options = {},
-                       std::vector<std::uint32_t>* conflict_of = nullptr) {
-  const ScratchFolder folder;
-  return find_conflicts(found.write(folder), found.poses, options, conflict_of);
-}
-
 }  // namespace
 
 TEST_CASE("a conflict tells its points, box, centroid, poses and chainage") {
-  Found found;
-  found.quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}};
-  found.poses = {translation({0, 0, 0}), translation({3, 4, 0}), translation({3, 4, 2})};
-  found.quanta = {{0, 0, 0}, {100, 0, 0}, {101, 50, 7}, {90'000, 0, 0}};
-  found.first_pose = {2, 1, 1, 0};
-  found.source = {3, 8, 21, 22};
-  ConflictOptions options;
-  options.min_points = 2;
+  const Found found{
+      .quanta = {{0, 0, 0}, {100, 0, 0}, {101, 50, 7}, {90'000, 0, 0}},
+      .first_pose = {2, 1, 1, 0},
+      .source = {3, 8, 21, 22},
+      .quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}},
+      .poses = {translation({0, 0, 0}), translation({3, 4, 0}), translation({3, 4, 2})}};
   std::vector<std::uint32_t> conflict_of;
-  const Conflicts out = conflicts_of(found, options, &conflict_of);
+  const Conflicts out = found.conflicts({.min_points = 2}, &conflict_of);
   check_equal(out.colliding_points, 4);
   check_equal(out.groups, 2);
   check_equal(out.small_groups, 1);
@@ -62,9 +53,7 @@ TEST_CASE("a conflict tells its points, box, centroid, poses and chainage") {
   check_equal(c.last_pose, 2);
   check_equal(c.chainage_from, 5);
   check_equal(c.chainage_to, 7);
-  CHECK(!c.least_distance);
-  CHECK(!c.nearest_pose);
-  CHECK(!c.encroachment);
+  CHECK_FALSE((c.least_distance || c.nearest_pose || c.encroachment));
 }
 
 TEST_CASE("a conflict along the whole path is told by its height") {
@@ -98,9 +87,7 @@ TEST_CASE("a conflict along the whole path is told by its height") {
       const std::int32_t y = of.from_y + (of.to_y - of.from_y) * (i % 4) / 3;
       found.quanta.push_back({100 * i, y, of.z + (i >= 590 ? of.rise : 0)});
     }
-    ConflictOptions options;
-    options.gap = 2;
-    const Conflicts conflicts = conflicts_of(found, options);
+    const Conflicts conflicts = found.conflicts({.gap = 2});
     CHECK(conflicts.longest_group_is == of.is);
     const std::vector<Message> warnings = conflict_warnings(conflicts, LengthUnit::kMetre);
     REQUIRE(warnings.size() == 1);
@@ -115,12 +102,10 @@ TEST_CASE("a conflict along the whole path is told by its height") {
 }
 
 TEST_CASE("a conflict has the class of most of its points") {
-  Found found;
-  found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {90'000, 0, 0}, {90'100, 0, 0}};
-  found.point_class = {18, 2, 18, 6, 5};
-  ConflictOptions options;
-  options.min_points = 2;
-  const Conflicts out = conflicts_of(found, options);
+  const Conflicts out = Found{
+      .quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {90'000, 0, 0}, {90'100, 0, 0}},
+      .point_class = {18, 2, 18, 6,
+                      5}}.conflicts({.min_points = 2});
   REQUIRE(out.listed.size() == 2);
   CHECK(out.listed[0].main_class == 18U);
   CHECK(out.listed[0].main_class_points == 2U);
@@ -131,9 +116,10 @@ TEST_CASE("a conflict has the class of most of its points") {
 
 TEST_CASE("a group is cut at multiples of the split where it is longer") {
   const Found found = rail(60);
-  ConflictOptions options;
-  const Conflicts cut = conflicts_of(found, options);
+  const Conflicts cut = found.conflicts();
   check_equal(cut.groups, 1);
+  check_equal(cut.longest_group, 59);
+  check_equal(cut.longest_group_points, 600);
   REQUIRE(cut.listed.size() == 3);
   const double from[] = {0, 25, 50}, to[] = {24, 49, 59};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -143,32 +129,20 @@ TEST_CASE("a group is cut at multiples of the split where it is longer") {
     check_equal(cut.listed[i].group, 0);
     CHECK(cut.listed[i].points == (i == 2 ? 100 : 250));
   }
-  check_equal(cut.longest_group, 59);
-  check_equal(cut.longest_group_points, 600);
-  options.split = 0;
-  check_equal(conflicts_of(found, options).listed.size(), 1);
-  options.split = 59;  // as long as the conflict
-  check_equal(conflicts_of(found, options).listed.size(), 1);
-  options.split = 58.5;
-  check_equal(conflicts_of(found, options).listed.size(), 2);
-  options.split = 1e-9;
-  check_equal(conflicts_of(found, options).listed.size(), 60);
-}
-
-TEST_CASE("chainages begin where the first pose is said to be, and nothing else changes") {
-  const Found found = rail(60);
-  ConflictOptions options;
-  const Conflicts plain = conflicts_of(found, options);
+  const std::pair<double, std::size_t> rows[] = {{0, 1}, {59, 1}, {58.5, 2}, {1e-9, 60}};
+  for (const auto& [split, parts] : rows) {
+    check_equal(found.conflicts({.split = split}).listed.size(), parts);
+  }
+  // Chainages begin where the first pose is said to be, and nothing else changes.
   for (const double start : {1234.5, -7.0}) {
-    options.chainage_start = start;
-    const Conflicts moved = conflicts_of(found, options);
-    REQUIRE(moved.listed.size() == plain.listed.size());
-    CHECK(moved.path_length == plain.path_length);
-    for (std::size_t i = 0; i < plain.listed.size(); ++i) {
-      CHECK(moved.listed[i].id == plain.listed[i].id);
-      CHECK(moved.listed[i].source == plain.listed[i].source);
-      CHECK(moved.listed[i].chainage_from == plain.listed[i].chainage_from + start);
-      CHECK(moved.listed[i].chainage_to == plain.listed[i].chainage_to + start);
+    const Conflicts moved = found.conflicts({.chainage_start = start});
+    REQUIRE(moved.listed.size() == cut.listed.size());
+    CHECK(moved.path_length == cut.path_length);
+    for (std::size_t i = 0; i < cut.listed.size(); ++i) {
+      CHECK(moved.listed[i].id == cut.listed[i].id);
+      CHECK(moved.listed[i].source == cut.listed[i].source);
+      CHECK(moved.listed[i].chainage_from == cut.listed[i].chainage_from + start);
+      CHECK(moved.listed[i].chainage_to == cut.listed[i].chainage_to + start);
     }
   }
 }
@@ -178,42 +152,30 @@ TEST_CASE(
   Found found = rail(26);
   found.quanta.push_back({900'000, 0, 0});
   found.first_pose.push_back(0);
-  ConflictOptions options;
-  options.min_points = 12;
-  const Conflicts out = conflicts_of(found, options);
+  const Conflicts out = found.conflicts({.min_points = 12});
   check_equal(out.small_groups, 1);
   check_equal(out.small_points, 1);
   REQUIRE(out.listed.size() == 1);  // 25 m long: not cut
-  options.split = 24.5;
-  const Conflicts cut = conflicts_of(found, options);
+  const Conflicts cut = found.conflicts({.min_points = 12, .split = 24.5});
   REQUIRE(cut.listed.size() == 2);
   check_equal(cut.listed[1].points, 10);
 }
 
 TEST_CASE("conflicts are numbered along the path, then by source") {
-  Found found;
-  found.quanta = {{0, 0, 0}, {5000, 0, 0}, {10'000, 0, 0}, {15'000, 0, 0}};
-  found.first_pose = {1, 0, 1, 0};
-  ConflictOptions options;
-  options.min_points = 1;
+  const Found found{.quanta = {{0, 0, 0}, {5000, 0, 0}, {10'000, 0, 0}, {15'000, 0, 0}},
+                    .first_pose = {1, 0, 1, 0}};
   std::vector<std::uint32_t> conflict_of;
-  const Conflicts out = conflicts_of(found, options, &conflict_of);
+  const Conflicts out = found.conflicts({.min_points = 1}, &conflict_of);
   check_equal(conflict_of, {3, 1, 4, 2});
   for (std::size_t i = 0; i < 4; ++i) CHECK(out.listed[i].id == i + 1);
 }
 
 TEST_CASE("least distances come from the clearances, of equal ones the smallest source") {
-  Found found;
-  found.quanta = {{0, 0, 0}, {100, 0, 0}, {5000, 0, 0}, {5100, 0, 0}};
-  found.source = {2, 4, 6, 8};
-  found.clearance = 0.6;
-  found.clearances.source = {1, 2, 4, 5, 8};
-  found.clearances.distance = {0.01, 0.25, 0.25, 0.02, 0.5};
-  found.clearances.pose = {0, 1, 0, 0, 1};
-  found.clearances.xyz.resize(5, found.rows().xyz[0]);
-  ConflictOptions options;
-  options.min_points = 1;
-  const Conflicts out = conflicts_of(found, options);
+  Found found{.quanta = {{0, 0, 0}, {100, 0, 0}, {5000, 0, 0}, {5100, 0, 0}},
+              .source = {2, 4, 6, 8},
+              .clearance = 0.6};
+  found.clear({1, 2, 4, 5, 8}, {0.01, 0.25, 0.25, 0.02, 0.5}, {0, 1, 0, 0, 1});
+  const Conflicts out = found.conflicts({.min_points = 1});
   REQUIRE(out.listed.size() == 2);
   check_equal(out.listed[0].least_distance, 0.25);
   check_equal(out.listed[0].nearest_source, 2);
@@ -225,17 +187,12 @@ TEST_CASE("least distances come from the clearances, of equal ones the smallest 
 }
 
 TEST_CASE("conflicts with solids tell depth and points inside") {
-  Found found;
-  found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {5000, 0, 0}, {5100, 0, 0}, {9000, 0, 0}};
-  found.clearance = 0.4;
-  found.clearances.source = {0, 1, 2, 4};
-  found.clearances.distance = {-0.25, 0.125, -0.5, 0.25};
-  found.clearances.pose = {0, 1, 1, 0};
-  found.clearances.xyz.resize(4, found.rows().xyz[0]);
-  found.solids = 2;
-  ConflictOptions options;
-  options.min_points = 1;
-  const Conflicts out = conflicts_of(found, options);
+  Found found{
+      .quanta = {{0, 0, 0}, {100, 0, 0}, {200, 0, 0}, {5000, 0, 0}, {5100, 0, 0}, {9000, 0, 0}},
+      .clearance = 0.4,
+      .solids = 2};
+  found.clear({0, 1, 2, 4}, {-0.25, 0.125, -0.5, 0.25}, {0, 1, 1, 0});
+  const Conflicts out = found.conflicts({.min_points = 1});
   REQUIRE(out.listed.size() == 3);
   check_equal(out.listed[0].least_distance, -0.5);
   check_equal(out.listed[0].nearest_source, 2);
@@ -243,15 +200,14 @@ TEST_CASE("conflicts with solids tell depth and points inside") {
   check_equal(out.listed[0].encroachment, 1);
   check_equal(out.listed[0].depth, 0.5);
   check_equal(out.listed[0].points_inside, 2);
-  check_equal(out.listed[1].depth, 0);
-  check_equal(out.listed[1].points_inside, 0);
-  check_equal(out.listed[2].depth, 0);
-  check_equal(out.listed[2].points_inside, 0);
+  for (const std::size_t outside : {1, 2}) {
+    check_equal(out.listed[outside].depth, 0);
+    check_equal(out.listed[outside].points_inside, 0);
+  }
   found.clearance = 0;
   found.clearances = {};
-  const Conflicts without = conflicts_of(found, options);
-  CHECK_FALSE(without.listed[0].depth);
-  CHECK_FALSE(without.listed[0].points_inside);
+  const Conflict without = found.first_conflict();
+  CHECK_FALSE((without.depth || without.points_inside));
 }
 
 TEST_CASE("threads and the order of work change nothing") {
@@ -262,27 +218,23 @@ TEST_CASE("threads and the order of work change nothing") {
     found.quanta.push_back({at(), at(), at() / 10});
     found.first_pose.push_back(static_cast<std::uint32_t>(below(random, 2)));
   }
-  ConflictOptions options;
-  options.gap = 0.35;
-  options.min_points = 1;
+  ConflictOptions options{.gap = 0.35, .min_points = 1};
   options.threads = 1;
   std::vector<std::uint32_t> conflict_of, again;
-  const Conflicts one = conflicts_of(found, options, &conflict_of);
+  const Conflicts one = found.conflicts(options, &conflict_of);
   CHECK(one.listed.size() > 100);
-  for (const int threads : {2, 7}) {
-    options.threads = threads;
-    const Conflicts other = conflicts_of(found, options, &again);
-    CHECK(again == conflict_of);
-    REQUIRE(other.listed.size() == one.listed.size());
-    for (std::size_t i = 0; i < one.listed.size(); ++i) {
-      CHECK(other.listed[i].centroid == one.listed[i].centroid);
-      CHECK(other.listed[i].source == one.listed[i].source);
-    }
+  options.threads = 5;
+  const Conflicts other = found.conflicts(options, &again);
+  CHECK(again == conflict_of);
+  REQUIRE(other.listed.size() == one.listed.size());
+  for (std::size_t i = 0; i < one.listed.size(); ++i) {
+    CHECK(other.listed[i].centroid == one.listed[i].centroid);
+    CHECK(other.listed[i].source == one.listed[i].source);
   }
 }
 
 TEST_CASE("a result without colliding points has no conflicts") {
-  const Conflicts out = conflicts_of({});
+  const Conflicts out = Found().conflicts();
   CHECK(out.listed.empty());
   check_equal(out.groups, 0);
   check_equal(out.path_length, 1);
@@ -310,20 +262,14 @@ TEST_CASE("what cannot be grouped is refused") {
     CHECK(error.remedy() == Remedy::kAskForFirstPose);
   }
 
-  ConflictOptions options;
-  options.up = Axis::kMinusX;
-  CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
-  options = {};
-  for (const double split : {-1.0, 1e-308, 9e-10, std::nan(""), 1.0 / 0.0}) {
-    options.split = split;
-    CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
-  }
-  options = {};
-  options.chainage_start = 1.0 / 0.0;
-  CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
-  options = {};
-  for (const double gap : {-1.0, std::nan(""), 1.0 / 0.0}) {
-    options.gap = gap;
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  for (const ConflictOptions& options :
+       {ConflictOptions{.up = Axis::kMinusX}, ConflictOptions{.split = -1},
+        ConflictOptions{.split = 9e-10}, ConflictOptions{.split = std::nan("")},
+        ConflictOptions{.split = kEndless}, ConflictOptions{.chainage_start = kEndless},
+        ConflictOptions{.gap = -1}, ConflictOptions{.gap = std::nan("")},
+        ConflictOptions{.gap = kEndless}}) {
+    CAPTURE(options.gap, options.split, options.chainage_start);
     CHECK_THROWS_AS(find_conflicts(result, found.poses, options), UsageError);
   }
 }
@@ -333,11 +279,8 @@ TEST_CASE("too little memory is refused with an amount that is enough") {
   Found found;
   for (std::int32_t i = 0; i < 300'000; ++i) found.quanta.push_back({i * 400, i % 7, 0});
   const Result result = found.write(folder);
-  ConflictOptions options;
-  options.min_points = 1;
-  options.gap = 0.3;
+  ConflictOptions options{.gap = 0.3, .min_points = 1, .memory_bytes = 1 << 20};
   double enough = 0;
-  options.memory_bytes = 1 << 20;
   for (int tries = 0; tries < 4; ++tries) {
     try {
       const Conflicts out = find_conflicts(result, found.poses, options);
@@ -355,10 +298,6 @@ TEST_CASE("too little memory is refused with an amount that is enough") {
 }
 
 TEST_CASE("a stop ends the work") {
-  const ScratchFolder folder;
-  const Found found = rail(3);
   const std::atomic<bool> stop{true};
-  ConflictOptions options;
-  options.stop = &stop;
-  CHECK_THROWS_AS(find_conflicts(found.write(folder), found.poses, options), Interrupted);
+  CHECK_THROWS_AS(rail(3).conflicts({.stop = &stop}), Interrupted);
 }

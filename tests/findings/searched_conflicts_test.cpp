@@ -2,14 +2,11 @@
 #include <cmath>
 
 #include "clearway/clearway.hpp"
-#include "core/geometry/quantisation.hpp"
 #include "core/query/search_result.hpp"
 #include "findings/searched_scene.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/engines/brute_force.hpp"
-#include "support/scenes.hpp"
-#include "support/solid_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -20,15 +17,6 @@ namespace {
 struct Scene : SearchedScene {
   using SearchedScene::SearchedScene;
 
-  Conflicts conflicts(std::vector<std::uint32_t>* conflict_of = nullptr) const {
-    ConflictOptions options;
-    options.gap = 0.3;
-    options.min_points = 1;
-    options.model = &query.model;
-    options.threads = 2;
-    return find_conflicts(Result(folder / "out.h5"), query.poses, options, conflict_of);
-  }
-
   /// Whether any point of the group collides at the conflict's poses, first to last, of the shifted
   /// path.
   bool collides(const std::vector<Vec3>& group, const Conflict& conflict, double shift) const {
@@ -36,9 +24,9 @@ struct Scene : SearchedScene {
     moved.between_poses = false;
     moved.poses.clear();
     for (std::uint32_t i = conflict.first_pose; i <= conflict.last_pose; ++i) {
-      Pose pose = query.poses[i];
+      moved.poses.push_back(query.poses[i]);
+      Pose& pose = moved.poses.back();
       for (int k = 0; k < 3; ++k) pose.translation[k] += shift * pose.rotation[3 * k + 1];
-      moved.poses.push_back(pose);
     }
     for (const std::uint32_t first : brute_force_first_poses(group, moved)) {
       if (first != kNoPose) return true;
@@ -46,18 +34,6 @@ struct Scene : SearchedScene {
     return false;
   }
 };
-
-std::vector<Vec3> pole(double x, double y) {
-  std::vector<Vec3> out;
-  for (int i = 0; i < 40; ++i) out.push_back({x, y, 0.05 * i});
-  return out;
-}
-
-Query solid_box(const Box& box, std::vector<Pose> poses, double radius) {
-  Bodies bodies;
-  bodies.add(box_surface(box));
-  return bodies.query(std::move(poses), radius);
-}
 
 }  // namespace
 
@@ -71,9 +47,9 @@ TEST_CASE("a conflict's poses hold the one of its least distance, and shifts fre
                 {.radius = 0.15, .clearance = 0.3});
     const Scene scene(random_points(random, room, 3000), query);
     std::vector<std::uint32_t> conflict_of;
-    const Conflicts found = scene.conflicts(&conflict_of);
+    const Conflicts found = scene.conflicts({.gap = 0.3, .min_points = 1}, &conflict_of);
     REQUIRE(found.listed.size() > 1);
-    const Result result(scene.folder / "out.h5");
+    const Result result = scene.result();
     const auto first = result.first_pose(), last = result.last_pose();
     const auto source = result.source();
     for (const Conflict& conflict : found.listed) {
@@ -109,26 +85,21 @@ TEST_CASE("a pole that a long load meets in its middle is named with station, si
     const double turn = 0.01 * i;
     poses.push_back(rotation({0, 0, 1}, turn, {50 * std::sin(turn), 50 * (1 - std::cos(turn)), 0}));
   }
-  const Pose& middle = poses[40];
-  // This point is 1.4 m to the left of the middle of the load, whose side is at 1.5 m, so 0.1 m
-  // inside it.
-  const double *r = middle.rotation, *t = middle.translation;
-  const Vec3 at{t[0] + 1.4 * r[1], t[1] + 1.4 * r[4], 0};
+  // 1.4 m to the left of the middle of the load, whose side is at 1.5 m, so 0.1 m inside it
+  const Vec3 at = poses[40].position() + poses[40].rotated({0, 1.4, 0});
+  std::vector<Vec3> pole;
+  for (int i = 0; i < 40; ++i) pole.push_back({at.x, at.y, 0.05 * i});
   for (const bool solid : {true, false}) {
     CAPTURE(solid);
     Query query = solid_box({{-15, -1.5, 0.2}, {15, 1.5, 3}}, poses, 0.1);
     if (!solid) query.model.solid_of.clear();
     query.clearance = 0.2;
-    const Scene scene(pole(at.x, at.y), query);
-    const Conflicts found = scene.conflicts();
-    REQUIRE(found.listed.size() == 1);
-    const Conflict& c = found.listed[0];
+    const Scene scene(pole, query);
+    const Conflict c = scene.only_conflict();
     CHECK(c.side == Side::kLeft);
-    REQUIRE(c.obstacle_chainage);
     // The pole stands beside the pose in the middle of the path, at 0.4 rad of 50 m.
-    CHECK(*c.obstacle_chainage == Approx(20).margin(0.5));
-    REQUIRE(c.own_shift_right);
-    CHECK(*c.own_shift_right > 0.2);
+    CHECK(c.obstacle_chainage.value() == Approx(20).margin(0.5));
+    REQUIRE(c.own_shift_right.value_or(0) > 0.2);
     CHECK_FALSE(scene.collides(scene.points, c, -(*c.own_shift_right + 1e-6)));
     CHECK(scene.collides(scene.points, c, -(*c.own_shift_right - 1e-6)));
     CHECK_FALSE(c.own_shift_left);  // 3 m more than there is
@@ -145,23 +116,19 @@ TEST_CASE("what the front of a vehicle meets is in front, whatever it is made of
     Query query = solid_box({{-2, -1, 0}, {2, 1, 1.5}}, straight_path(20), 0.1);
     if (!solid) query.model.solid_of.clear();
     query.clearance = 0.2;
-    const Conflicts found = Scene(wall, query).conflicts();
-    REQUIRE(found.listed.size() == 1);
-    CHECK(found.listed[0].first_touch == Side::kFront);
-    CHECK(*found.listed[0].obstacle_chainage == Approx(12.1).margin(1e-9));
+    const Conflict c = Scene(wall, query).only_conflict();
+    CHECK(c.first_touch == Side::kFront);
+    CHECK(*c.obstacle_chainage == Approx(12.1).margin(1e-9));
     // The conflict reaches from the pose at 10 m, whose front is at 12 m, to where the rear at -2 m
     // has passed.
-    check_equal(found.listed[0].chainage_from, 10);
-    check_equal(found.listed[0].chainage_to, 14);
+    check_equal(c.chainage_from, 10);
+    check_equal(c.chainage_to, 14);
   }
 }
 
 TEST_CASE("between poses the range ends with the pose after the last way that touches") {
-  Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1, .between_poses = true});
-  const Scene scene({{4.25, 0.05, 0.5}}, query);
-  const Conflicts found = scene.conflicts();
-  REQUIRE(found.listed.size() == 1);
-  const Conflict& c = found.listed[0];
+  const Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1, .between_poses = true});
+  const Conflict c = Scene({{4.25, 0.05, 0.5}}, query).only_conflict();
   check_equal(c.first_pose, 8);
   check_equal(c.last_pose, 8);
   check_equal(c.chainage_from, 4);
@@ -170,12 +137,9 @@ TEST_CASE("between poses the range ends with the pose after the last way that to
 }
 
 TEST_CASE("groups that are too small to be listed are told one by one") {
-  Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1});
+  const Query query({{0, 0, 0.5}}, straight_path(10), {.radius = 0.1});
   const Scene scene({{4, 0, 0.5}, {4, 0.05, 0.5}, {8, 0, 0.5}}, query);
-  ConflictOptions options;
-  options.min_points = 10;
-  const Conflicts found =
-      find_conflicts(Result(scene.folder / "out.h5"), scene.query.poses, options);
+  const Conflicts found = scene.conflicts({.min_points = 10});
   CHECK(found.listed.empty());
   REQUIRE(found.small.size() == 2);
   check_equal(found.small_points, 3);
@@ -185,58 +149,30 @@ TEST_CASE("groups that are too small to be listed are told one by one") {
   check_equal(found.small[1].chainage_from, 8);
 }
 
-TEST_CASE("between poses, shifts free the ways too") {
-  Query query;
-  query.model = {{0, 0, 0}};
-  query.poses = {rotation({0, 0, 1}, 0, {0, 0, 0}), rotation({0, 0, 1}, 0, {10, 0, 0})};
-  query.radius = 0.1;
-  query.between_poses = true;
-  const Scene scene({{5, 0.05, 0}}, query);
-  const Conflicts found = scene.conflicts();
-  REQUIRE(found.listed.size() == 1);
-  REQUIRE(found.listed[0].own_shift_left);
-  REQUIRE(found.listed[0].own_shift_right);
-  CHECK(*found.listed[0].own_shift_left == Approx(0.15).margin(1e-6));
-  CHECK(*found.listed[0].own_shift_right == Approx(0.05).margin(1e-6));
-}
-
-TEST_CASE("left and right of a shift are those of the side, whichever axis points ahead") {
-  Query query;
-  query.model = {{0, 0, 0}};
-  for (int i = 0; i <= 20; ++i) {
-    query.poses.push_back(rotation({0, 0, 1}, 0, {0, 0.05 * i, 0}));
-  }
-  query.radius = 0.1;
-  const Scene scene({{0.05, 0.5, 0}}, query);
-  ConflictOptions options;
-  options.min_points = 1;
-  options.model = &scene.query.model;
-  options.forward = Axis::kPlusY;
-  const Conflicts found = find_conflicts(Result(scene.folder / "out.h5"), query.poses, options);
-  REQUIRE(found.listed.size() == 1);
-  REQUIRE(found.listed[0].lateral);
-  CHECK(*found.listed[0].lateral == Approx(-0.05));  // to the right
-  CHECK(found.listed[0].own_shift_left.value() == Approx(0.05).margin(1e-6));
-  CHECK(found.listed[0].own_shift_right.value() == Approx(0.15).margin(1e-6));
+TEST_CASE("shifts free the ways between poses too, and are to the left of what is ahead") {
+  std::vector<Pose> to_y;
+  for (int i = 0; i <= 20; ++i) to_y.push_back(translation({0, 0.05 * i, 0}));
+  const Conflict between = Scene({{5, 0.05, 0}}, Query({{0, 0, 0}}, straight_path(10, 10),
+                                                       {.radius = 0.1, .between_poses = true}))
+                               .only_conflict();
+  const Conflict across = Scene({{0.05, 0.5, 0}}, Query({{0, 0, 0}}, to_y, {.radius = 0.1}))
+                              .only_conflict({.min_points = 1, .forward = Axis::kPlusY});
+  CHECK(between.own_shift_left.value() == Approx(0.15).margin(1e-6));
+  CHECK(between.own_shift_right.value() == Approx(0.05).margin(1e-6));
+  CHECK(across.lateral.value() == Approx(-0.05));  // to the right
+  CHECK(across.own_shift_left.value() == Approx(0.05).margin(1e-6));
+  CHECK(across.own_shift_right.value() == Approx(0.15).margin(1e-6));
 }
 
 TEST_CASE("the station of an obstacle does not depend on where a body's own frame begins") {
-  std::vector<Pose> path, behind;
-  for (int i = 0; i <= 100; ++i) {
-    path.push_back(rotation({0, 0, 1}, 0, {0.5 * i, 0, 0}));
-    behind.push_back(rotation({0, 0, 1}, 0, {0.5 * i - 10, 0, 0}));
+  Query query({}, straight_path(50), {.radius = 0.1});
+  Body body{.name = "trailer", .model = {{0, 0, 0}}, .poses = {}, .path_pose = {}};
+  for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
+    body.poses.push_back(translation({0.5 * i - 10, 0, 0}));
+    body.path_pose.push_back(i);
   }
-  Query query;
-  query.poses = path;
-  query.radius = 0.1;
-  Body body{.name = "trailer", .model = {{0, 0, 0}}, .poses = behind, .path_pose = {}};
-  for (std::uint32_t i = 0; i < path.size(); ++i) body.path_pose.push_back(i);
   query.bodies = {body};
-  const Scene scene({{5, 0, 0}, {30, 0.02, 0}}, query);
-  ConflictOptions options;
-  options.min_points = 1;
-  options.bodies = query.bodies;
-  const Conflicts found = find_conflicts(Result(scene.folder / "out.h5"), path, options);
+  const Conflicts found = Scene({{5, 0, 0}, {30, 0.02, 0}}, query).conflicts();
   REQUIRE(found.listed.size() == 2);
   CHECK(found.listed[0].obstacle_chainage.value() == Approx(5).margin(0.11));
   CHECK(found.listed[1].obstacle_chainage.value() == Approx(30).margin(0.11));

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cmath>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "support/scenes.hpp"
+#include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {
@@ -31,10 +33,32 @@ struct SearchedScene {
 
   Result result() const { return Result(folder / "out.h5"); }
 
+  Conflicts conflicts(ConflictOptions options = {.min_points = 1},
+                      std::vector<std::uint32_t>* conflict_of = nullptr) const {
+    if (query.bodies.empty()) options.model = &query.model;
+    options.bodies = query.bodies;
+    options.threads = 2;
+    return find_conflicts(result(), query.poses, options, conflict_of);
+  }
+
+  /// The conflict of a scene that has one.
+  Conflict only_conflict(const ConflictOptions& options = {.min_points = 1}) const {
+    const Conflicts found = conflicts(options);
+    if (found.listed.size() != 1) throw std::logic_error("not one conflict");
+    return found.listed.front();
+  }
+
   Query query;
   std::vector<Vec3> points;
   ScratchFolder folder;
 };
+
+/// A closed box as the model.
+inline Query solid_box(const Box& box, std::vector<Pose> poses, double radius) {
+  Bodies bodies;
+  bodies.add(box_surface(box));
+  return bodies.query(std::move(poses), radius);
+}
 
 /// A path along x, of at least one pose.
 inline std::vector<Pose> straight_path(double length, double step = 0.5) {

@@ -8,9 +8,7 @@
 #include "core/geometry/inside.hpp"
 #include "findings/conflict_fixture.hpp"
 #include "findings/searched_scene.hpp"
-#include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/solid_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -193,25 +191,16 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
       const double size = 0.05 + 0.3 * static_cast<double>(below(random, 4));
       const Vec3 half{size, size, size};
       for (const Vec3& p : random_points(random, {at - half, at + half}, 1 + below(random, 60))) {
-        found.quanta.push_back({});
-        for (int k = 0; k < 3; ++k) {
-          found.quanta.back()[static_cast<std::size_t>(k)] =
-              static_cast<std::int32_t>(std::lround(p[k] * 1000));
-        }
+        found.quanta.push_back(millimetres(p));
         found.first_pose.push_back(static_cast<std::uint32_t>(below(random, found.poses.size())));
         found.last_pose.push_back(found.first_pose.back() +
                                   static_cast<std::uint32_t>(
                                       below(random, found.poses.size() - found.first_pose.back())));
       }
     }
-    const ScratchFolder folder;
-    ConflictOptions options;
-    options.min_points = 1;
-    options.split = 0;
-    options.threads = 1 + static_cast<int>(seed % 2);
     std::vector<std::uint32_t> conflict_of;
-    const Conflicts conflicts =
-        find_conflicts(found.write(folder), found.poses, options, &conflict_of);
+    const Conflicts conflicts = found.conflicts(
+        {.min_points = 1, .split = 0, .threads = 1 + static_cast<int>(seed % 2)}, &conflict_of);
     const Collisions rows = found.rows();
     const double radius = found.header().radius;
     for (const Conflict& c : conflicts.listed) {
@@ -240,29 +229,15 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
 }
 
 TEST_CASE("a half turn takes the trims of no conflict but its own") {
-  Found found;
-  found.poses.clear();
-  for (int i = 0; i < 40; ++i) found.poses.push_back(translation({0.25 * i, 0, 0}));
-  found.between_poses = true;
+  Found found{.poses = straight_path(9.75, 0.25), .between_poses = true};
   for (int i = 0; i < 30; ++i) {  // a rail that reaches 0.1 m into the vehicle from the left
     found.quanta.push_back({2000 + 20 * i, 900, 10 * i});
     found.first_pose.push_back(4);
     found.last_pose.push_back(8);
   }
-  const auto found_on = [&](const std::vector<Pose>& poses) {
-    Found with = found;
-    with.poses = poses;
-    const ScratchFolder folder;
-    ConflictOptions options;
-    options.min_points = 1;
-    const Conflicts conflicts = find_conflicts(with.write(folder), poses, options);
-    REQUIRE(conflicts.listed.size() == 1);
-    return conflicts.listed.front();
-  };
-  const Conflict straight = found_on(found.poses);
-  std::vector<Pose> turning = found.poses;
-  turning.push_back(rotation({0, 0, 1}, std::numbers::pi, {10, 0, 0}));
-  const Conflict before_turn = found_on(turning);
+  const Conflict straight = found.first_conflict();
+  found.poses.push_back(rotation({0, 0, 1}, std::numbers::pi, {10, 0, 0}));
+  const Conflict before_turn = found.first_conflict();
   CHECK(straight.side == Side::kLeft);
   CHECK(straight.trim_left == Approx(0.6));
   CHECK(before_turn.side == straight.side);
@@ -303,20 +278,15 @@ std::vector<Vec3> joined(std::vector<Vec3> a, const std::vector<Vec3>& b) {
 }
 
 Conflict conflict_with(const std::vector<Vec3>& points) {
-  Bodies bodies;
-  bodies.add(box_surface({{-4, -1, 0.5}, {4, 1, 3}}));
-  Query query = bodies.query(straight_path(40, 0.5), 0.2);
+  Query query = solid_box({{-4, -1, 0.5}, {4, 1, 3}}, straight_path(40, 0.5), 0.2);
   query.clearance = 0.3;
-  const SearchedScene scene(points, query);
-  ConflictOptions options;
-  options.min_points = 1;
-  options.gap = 3;
-  options.split = 0;
-  options.model = &scene.query.model;
-  options.threads = 2;
-  const Conflicts found = find_conflicts(scene.result(), scene.query.poses, options);
-  REQUIRE(found.listed.size() == 1);
-  return found.listed.front();
+  return SearchedScene(points, query).only_conflict({.gap = 3, .min_points = 1, .split = 0});
+}
+
+/// Checks a length that may be unknown, to a millimetre.
+void check_known(const std::optional<double>& found, const std::optional<double>& expected) {
+  REQUIRE(found.has_value() == expected.has_value());
+  if (found) check_near(*found, *expected, 1e-3);
 }
 
 }  // namespace
@@ -351,62 +321,40 @@ TEST_CASE("sides, trims and shifts are what a person would say") {
     for (const auto& trim : trims_of(c)) {
       if (trim && (!least || *trim < *least)) least = trim;
     }
-    REQUIRE(least.has_value() == row.trim.has_value());
-    if (least) CHECK(*least == Approx(*row.trim).margin(1e-3));
-    REQUIRE(c.own_shift_left.has_value() == row.left.has_value());
-    if (row.left) CHECK(*c.own_shift_left == Approx(*row.left).margin(1e-3));
-    REQUIRE(c.own_shift_right.has_value() == row.right.has_value());
-    if (row.right) CHECK(*c.own_shift_right == Approx(*row.right).margin(1e-3));
+    check_known(least, row.trim);
+    check_known(c.own_shift_left, row.left);
+    check_known(c.own_shift_right, row.right);
     CHECK(c.encroachment_is == Bound::kExact);
   }
 }
 
 TEST_CASE("without an inside what is missing is at least so much") {
-  for (const bool surface : {true, false}) {
-    Query query;
-    if (surface) {
-      Bodies bodies;
-      bodies.add(box_surface({{-1, -1, 0}, {1, 1, 2}}));
-      query = bodies.query(straight_path(20), 0.1);
-      query.model.solid_of.clear();
-    } else {
-      query = Query({{0, 1, 1}}, straight_path(20), {.radius = 0.1});
-    }
-    query.clearance = 0.1;
-    const SearchedScene scene({{10, 1.05, 1}}, query);
-    const Conflicts found = find_conflicts(scene.result(), scene.query.poses, {});
+  Query surface = solid_box({{-1, -1, 0}, {1, 1, 2}}, straight_path(20), 0.1);
+  surface.model.solid_of.clear();
+  Query points({{0, 1, 1}}, straight_path(20), {.radius = 0.1});
+  const auto conflicts = [](const Query& query) {
+    return SearchedScene({{10, 1.05, 1}}, query).conflicts({});
+  };
+  CHECK_FALSE(conflicts(points).listed[0].encroachment_is);
+  surface.clearance = points.clearance = 0.1;
+  for (const Query& query : {surface, points}) {
+    const Conflicts found = conflicts(query);
     REQUIRE(found.listed.size() == 1);
     CHECK(found.listed[0].encroachment_is == Bound::kAtLeast);
     check_equal(found.min_points, 1);
   }
-  const SearchedScene without({{10, 1.05, 1}},
-                              Query({{0, 1, 1}}, straight_path(20), {.radius = 0.1}));
-  CHECK_FALSE(find_conflicts(without.result(), without.query.poses, {}).listed[0].encroachment_is);
 }
 
 TEST_CASE("own shifts leave out what is below the floor") {
   // A post whose lowest 0.5 m are below the floor, and a wall that is below it altogether.
-  Found found;
-  found.poses = straight_path(4, 0.25);
-  found.floor = 0.5;
-  found.solids = 1;
-  const Box box{{-1, -1, -1}, {1, 1, 1}};
+  Found found{.poses = straight_path(4, 0.25), .solids = 1, .floor = 0.5};
   for (int k = 0; k <= 10; ++k) found.quanta.push_back({2000, 900 + (k < 5 ? -600 : 0), 100 * k});
   found.first_pose.assign(found.quanta.size(), 2);
   found.last_pose.assign(found.quanta.size(), 12);
-  Bodies bodies;
-  bodies.add(box_surface(box));
-  const Model model = bodies.query(found.poses, 0.5).model;
-  ConflictOptions options;
-  options.model = &model;
-  options.gap = 1;
-  const ScratchFolder folder;
-  const Conflicts conflicts = find_conflicts(found.write(folder), found.poses, options);
-  REQUIRE(conflicts.listed.size() == 1);
-  const Conflict& c = conflicts.listed[0];
+  const Model model = solid_box({{-1, -1, -1}, {1, 1, 1}}, found.poses, 0.5).model;
+  const Conflict c = found.first_conflict({.gap = 1, .model = &model});
   // Only the part of the post at 0.9 m to the left counts, although points at 0.3 m are lower.
-  REQUIRE(c.own_shift_right);
-  CHECK(*c.own_shift_right == Approx(0.6).margin(1e-6));
-  CHECK(c.trim_left.value() == Approx(0.6));
+  check_known(c.own_shift_right, 0.6);
+  check_known(c.trim_left, 0.6);
   CHECK(c.side == Side::kLeft);
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/geometry/angle.hpp"
+#include "core/trajectory/paths.hpp"
 #include "support/attitudes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -15,69 +16,57 @@ using namespace clearway::test;
 
 namespace {
 
-Pose pose_at(const Rotation& rotation, double x, double y, double z) {
-  Pose pose{{}, {x, y, z}};
-  for (std::size_t k = 0; k < 9; ++k) pose.rotation[k] = rotation[k];
+void turn(Pose& pose, const Rotation& rotation) { std::ranges::copy(rotation, pose.rotation); }
+
+Pose turned_at(const Rotation& rotation, const Vec3& at) {
+  Pose pose = translation(at);
+  turn(pose, rotation);
   return pose;
 }
 
-/// The path of a car on a winding road, at coordinates of a map.
-std::vector<Pose> winding_road() {
+/// Changes a pose that has a heading.
+using Change = std::function<void(Pose& pose, double heading)>;
+
+/// The path of a car on a winding road, at coordinates of a map, with all of its poses changed.
+std::vector<Pose> winding_road(const Change& change = [](Pose&, double) {}) {
   std::vector<Pose> poses;
-  double x = 5e5;
-  double y = 5.3e6;
+  Vec3 at{5e5, 5.3e6, 300};
   for (int i = 0; i < 1000; ++i) {
     const double heading = 1.2 * std::sin(0.01 * i) + 0.3;
-    x += 0.1 * std::cos(heading);
-    y += 0.1 * std::sin(heading);
-    poses.push_back(pose_at(about_z(heading) * about_y(0.01), x, y, 300));
+    at = at + 0.1 * Vec3{std::cos(heading), std::sin(heading), 0};
+    poses.push_back(turned_at(about_z(heading) * about_y(0.01), at));
+    change(poses.back(), heading);
   }
   return poses;
 }
 
-std::vector<Pose> changed(std::vector<Pose> poses, const std::function<void(Pose&)>& change) {
-  for (Pose& pose : poses) change(pose);
-  return poses;
-}
-
-void transpose(Pose& pose) {
+void transpose(Pose& pose, double) {
   std::swap(pose.rotation[1], pose.rotation[3]);
   std::swap(pose.rotation[2], pose.rotation[6]);
   std::swap(pose.rotation[5], pose.rotation[7]);
 }
-
-void invert(Pose& pose) {
-  transpose(pose);
-  const double* p = pose.translation;
-  double moved[3];
-  for (int row = 0; row < 3; ++row) {
-    const double* r = pose.rotation + 3 * row;
-    moved[row] = -(r[0] * p[0] + r[1] * p[1] + r[2] * p[2]);
-  }
-  std::copy_n(moved, 3, pose.translation);
+void invert(Pose& pose, double) {
+  transpose(pose, 0);
+  const Vec3 moved = pose.rotated(pose.position());
+  for (int k = 0; k < 3; ++k) pose.translation[k] = -moved[k];
 }
-
-/// The codes of the doubts, joined.
-std::string doubts(const std::vector<Pose>& poses,
-                   RotationSource source = RotationSource::kMatrices) {
-  std::string codes;
-  for (const Message& doubt : doubts_about(poses, source, "path.txt")) {
-    CHECK(doubt.severity == Message::Severity::kWarning);
-    CHECK(doubt.text.starts_with("path.txt: "));
-    codes += (codes.empty() ? "" : " ") + doubt.code;
-  }
-  return codes;
+void swap_columns(Pose& pose, double) { std::swap(pose.translation[0], pose.translation[1]); }
+void stand_on_head(Pose& pose, double) {
+  for (const int k : {1, 2, 4, 5, 7, 8}) pose.rotation[k] *= -1;
 }
 
 /// The rotation that a reader makes where it takes w x y z of the file for x y z w.
-Rotation misread(double half_angle) {
-  const double x = std::cos(half_angle);
-  const double y = 0;
-  const double z = 0;
-  const double w = std::sin(half_angle);
-  return {1 - 2 * (y * y + z * z), 2 * (x * y - w * z),     2 * (x * z + w * y),
-          2 * (x * y + w * z),     1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
-          2 * (x * z - w * y),     2 * (y * z + w * x),     1 - 2 * (x * x + y * y)};
+void misread(Pose& pose, double heading) {
+  const double x = std::cos(heading / 2), w = std::sin(heading / 2);
+  turn(pose, {1, 0, 0, 0, 1 - 2 * x * x, -2 * w * x, 0, 2 * w * x, 1 - 2 * x * x});
+}
+
+/// The codes of the doubts, all of which are warnings that name the file.
+std::string doubts(const std::vector<Pose>& poses,
+                   RotationSource source = RotationSource::kMatrices) {
+  const std::vector<Message> found = doubts_about(poses, source, "path.txt");
+  for (const Message& doubt : found) CHECK(doubt.text.starts_with("path.txt: "));
+  return codes_of(found);
 }
 
 }  // namespace
@@ -85,79 +74,63 @@ Rotation misread(double half_angle) {
 TEST_CASE("nothing is doubted where nothing is wrong") {
   for (const auto source :
        {RotationSource::kMatrices, RotationSource::kQuaternions, RotationSource::kAngles}) {
-    CHECK(doubts(winding_road(), source).empty());
-    CHECK(doubts({}, source).empty());
-    CHECK(doubts({winding_road()[0]}, source).empty());
+    check_equal(doubts(winding_road(), source), "");
+    check_equal(doubts({}, source), "");
+    check_equal(doubts({winding_road()[0]}, source), "");
   }
   // Backwards on the same way, a straight line without rotations, and a turn on the spot.
   auto there_and_back = winding_road();
-  there_and_back.insert(there_and_back.end(), there_and_back.rbegin(), there_and_back.rend());
-  CHECK(doubts(there_and_back).empty());
-  std::vector<Pose> straight;
-  std::vector<Pose> turning;
+  drive_back(there_and_back);
+  check_equal(doubts(there_and_back), "");
+  std::vector<Pose> straight, turning;
   for (int i = 0; i < 100; ++i) {
-    straight.push_back(pose_at(about_z(0), std::abs(50.0 - i), 0, 0));
-    turning.push_back(pose_at(about_z(0.1 * i), 1, 2, 3));
+    straight.push_back(translation({std::abs(50.0 - i), 0, 0}));
+    turning.push_back(headed(0.1 * i, {1, 2, 3}));
   }
-  CHECK(doubts(straight).empty());
-  CHECK(doubts(turning).empty());
+  check_equal(doubts(straight), "");
+  check_equal(doubts(turning), "");
 }
 
-TEST_CASE("rotations that are missing are doubted where the path turns") {
-  const auto still =
-      changed(winding_road(), [](Pose& pose) { std::copy_n(about_z(0).data(), 9, pose.rotation); });
-  check_equal(doubts(still), "rotation-missing");
-}
-
-TEST_CASE("radians that were read as degrees are doubted") {
-  auto poses = winding_road();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double heading = 1.2 * std::sin(0.01 * static_cast<double>(i)) + 0.3;
-    std::copy_n(about_z(heading * 0.01745).data(), 9, poses[i].rotation);
-  }
-  check_equal(doubts(poses, RotationSource::kAngles), "rotation-too-small");
-}
-
-TEST_CASE("inverse poses, and rotations that turn the other way, are doubted") {
-  check_equal(doubts(changed(winding_road(), invert)), "poses-inverse");
-  check_equal(doubts(changed(winding_road(), transpose)), "turns-against-path");
-  const auto swapped = changed(
-      winding_road(), [](Pose& pose) { std::swap(pose.translation[0], pose.translation[1]); });
-  check_equal(doubts(swapped), "turns-against-path");
-}
-
-TEST_CASE("the hint names what the file has: columns, headings, matrices or quaternions") {
-  const auto text = [](const std::vector<Pose>& poses, RotationSource source) {
-    const auto found = doubts_about(poses, source, "path.txt");
-    return found.size() == 1 ? found[0].text : "not one doubt";
+TEST_CASE("what is wrong with rotations is doubted, with a hint at what the file has") {
+  struct Row {
+    const char* what;
+    Change change;
+    RotationSource source;
+    const char* code;
+    const char* hint = "";
   };
-  const auto swapped = changed(
-      winding_road(), [](Pose& pose) { std::swap(pose.translation[0], pose.translation[1]); });
-  CHECK_THAT(text(swapped, RotationSource::kMatrices),
-             EndsWith("The columns x and y may be swapped, as northing before easting"));
-  CHECK_THAT(text(swapped, RotationSource::kAngles),
-             EndsWith("swapped, or headings may be counted clockwise from north"));
-  const auto transposed = changed(winding_road(), transpose);
-  CHECK_THAT(text(transposed, RotationSource::kMatrices),
-             EndsWith("right. Matrices may be column by column"));
-  CHECK_THAT(text(transposed, RotationSource::kAngles),
-             EndsWith("right. Angles may be counted the other way"));
-  CHECK_THAT(text(transposed, RotationSource::kQuaternions),
-             EndsWith("right. Quaternions may be of the inverse rotations"));
-  const auto turned = changed(winding_road(), [](Pose& pose) {
-    for (const int k : {1, 2, 4, 5, 7, 8}) pose.rotation[k] *= -1;
-  });
-  check_lacks(text(turned, RotationSource::kMatrices), "quaternion");
-  check_says(text(turned, RotationSource::kQuaternions), "order of quaternions");
-}
-
-TEST_CASE("quaternions in another order are doubted") {
-  auto poses = winding_road();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double heading = 1.2 * std::sin(0.01 * static_cast<double>(i)) + 0.3;
-    std::copy_n(misread(heading / 2).data(), 9, poses[i].rotation);
+  constexpr auto kMatrices = RotationSource::kMatrices, kAngles = RotationSource::kAngles,
+                 kQuaternions = RotationSource::kQuaternions;
+  for (const Row& row :
+       {Row{"missing", [](Pose&pose, double) { turn(pose, about_z(0)); }, kMatrices,
+            "rotation-missing"},
+        Row{"radians that were read as degrees",
+            [](Pose&pose, double heading) { turn(pose, about_z(heading * 0.01745)); }, kAngles,
+            "rotation-too-small"},
+        Row{"inverse poses", invert, kMatrices, "poses-inverse"},
+        Row{"swapped columns", swap_columns, kMatrices, "turns-against-path",
+            "The columns x and y may be swapped, as northing before easting"},
+        Row{"headings", swap_columns, kAngles, "turns-against-path",
+            "swapped, or headings may be counted clockwise from north"},
+        Row{"transposed", transpose, kMatrices, "turns-against-path",
+            "right. Matrices may be column by column"},
+        Row{"the other way", transpose, kAngles, "turns-against-path",
+            "right. Angles may be counted the other way"},
+        Row{"inverse rotations", transpose, kQuaternions, "turns-against-path",
+            "right. Quaternions may be of the inverse rotations"},
+        Row{"another order", misread, kQuaternions, "quaternion-order"},
+        Row{"on its head", stand_on_head, kMatrices, "upside-down"},
+        Row{"quaternions on their head", stand_on_head, kQuaternions, "upside-down"}}) {
+    const RowName name(row.what);
+    const auto found = doubts_about(winding_road(row.change), row.source, "path.txt");
+    check_equal(codes_of(found), row.code);
+    if (found.size() == 1) CHECK_THAT(found[0].text, EndsWith(row.hint));
   }
-  check_equal(doubts(poses, RotationSource::kQuaternions), "quaternion-order");
+  const auto hint = [](RotationSource source) {
+    return doubts_about(winding_road(stand_on_head), source, "path.txt").at(0).text;
+  };
+  check_lacks(hint(kMatrices), "quaternion");
+  check_says(hint(kQuaternions), "order of quaternions");
 }
 
 TEST_CASE("free motion is not doubted, near the origin or on a map") {
@@ -165,19 +138,12 @@ TEST_CASE("free motion is not doubted, near the origin or on a map") {
     std::vector<Pose> drone;
     for (int i = 0; i < 1000; ++i) {
       const double a = 0.01 * i;
-      drone.push_back(pose_at(about_z(std::sin(7 * a)) * about_x(std::sin(5 * a)),
-                              far + std::sin(3 * a), far + std::cos(2 * a), std::sin(a)));
+      drone.push_back(turned_at(about_z(std::sin(7 * a)) * about_x(std::sin(5 * a)),
+                                {far + std::sin(3 * a), far + std::cos(2 * a), std::sin(a)}));
     }
     CHECK(doubts(drone).empty());
     CHECK(doubts(drone, RotationSource::kQuaternions).empty());
   }
-}
-
-TEST_CASE("a model that stands on its head is doubted") {
-  const auto turned = changed(winding_road(), [](Pose& pose) {
-    for (const int k : {1, 2, 4, 5, 7, 8}) pose.rotation[k] *= -1;
-  });
-  check_equal(doubts(turned), "upside-down");
 }
 
 TEST_CASE("roll to the outside of curves is doubted where the path is level elsewhere") {
@@ -188,16 +154,16 @@ TEST_CASE("roll to the outside of curves is doubted where the path is level else
   // A straight of 100 m, a curve of 80 m to the left, a straight, and a curve to the right.
   const auto path = [](const Row& row) {
     std::vector<Pose> poses;
-    double x = 5e5, y = 5.3e6, heading = 0.4;
+    Vec3 at{5e5, 5.3e6, 300};
+    double heading = 0.4;
     for (int i = 0; i < 3600; ++i) {
       const int part = i / 900;
       const bool curves = i % 900 >= 450;
       const double turn = curves ? (part % 2 == 0 ? 1 : -1) / 100.0 : 0;
       heading += 0.1 * turn;
-      x += 0.1 * std::cos(heading);
-      y += 0.1 * std::sin(heading);
+      at = at + 0.1 * Vec3{std::cos(heading), std::sin(heading), 0};
       const double to_right = (turn > 0 ? -1 : turn < 0 ? 1 : 0) * row.inwards - row.slope;
-      poses.push_back(pose_at(about_z(heading) * about_x(to_right * kDegree), x, y, 300));
+      poses.push_back(turned_at(about_z(heading) * about_x(to_right * kDegree), at));
     }
     return poses;
   };
@@ -211,13 +177,6 @@ TEST_CASE("roll to the outside of curves is doubted where the path is level else
 namespace {
 
 using Doubles = std::vector<double>;
-
-Pose heading(double angle, double x, double y) {
-  Pose pose{{}, {x, y, 0}};
-  const Rotation turn = about_z(angle);
-  std::copy_n(turn.data(), 9, pose.rotation);
-  return pose;
-}
 
 /// The poses at which jumps begin.
 std::vector<std::size_t> starts(const Doubles& steps, double least = 0.1) {
@@ -239,22 +198,21 @@ void append(Doubles& to, const Doubles& what) { to.insert(to.end(), what.begin()
 
 }  // namespace
 
-TEST_CASE("a step far longer than those around it is a jump, wherever it is") {
-  CHECK(starts(even(100)).empty());
-  CHECK(starts(even(100, {40})) == Starts{40});
-  CHECK(starts(even(100, {0})) == Starts{0});
-  CHECK(starts(even(100, {99})) == Starts{99});
-  CHECK(starts(even(100, {30, 33, 80})) == Starts{30, 33, 80});
-  CHECK(starts({0.5, 31}) == Starts{1});
-  CHECK(starts({31}).empty());
-  CHECK(starts({}).empty());
-}
-
 TEST_CASE("a jump is more than five times the median, and longer than what matters") {
-  CHECK(starts(even(100, {40}, 2.5)).empty());
-  CHECK(starts(even(100, {40}, std::nextafter(2.5, 3))) == Starts{40});
-  CHECK(starts(even(100, {40}, 2.6), 2.6).empty());
-  CHECK(starts(even(100, {40}, 2.6), 2.5) == Starts{40});
+  struct Row {
+    Doubles steps;
+    Starts starts;
+    double least = 0.1;
+  };
+  for (const Row& row :
+       {Row{even(100), {}}, Row{even(100, {40}), {40}}, Row{even(100, {0}), {0}},
+        Row{even(100, {99}), {99}}, Row{even(100, {30, 33, 80}), {30, 33, 80}}, Row{{0.5, 31}, {1}},
+        Row{{31}, {}}, Row{{}, {}}, Row{even(100, {40}, 2.5), {}},
+        Row{even(100, {40}, std::nextafter(2.5, 3)), {40}}, Row{even(100, {40}, 2.6), {}, 2.6},
+        Row{even(100, {40}, 2.6), {40}, 2.5}}) {
+    CAPTURE(row.steps.size(), row.least);
+    CHECK(starts(row.steps, row.least) == row.starts);
+  }
   const Jump jump = jumps_of(even(100, {40}), 0.1).at(0);
   check_equal(jump.length, 31);
   check_equal(jump.usual, 0.5);
@@ -318,7 +276,8 @@ TEST_CASE("the chord of an even curve leaves it by its sagitta, and that of the 
   const double turn = kStep / kRadius;
   std::vector<Pose> poses;
   for (int i = 0; i < 20; ++i) {
-    poses.push_back(heading(turn * i, kRadius * std::sin(turn * i), -kRadius * std::cos(turn * i)));
+    poses.push_back(
+        headed(turn * i, {kRadius * std::sin(turn * i), -kRadius * std::cos(turn * i), 0}));
   }
   const double sagitta = kRadius * (1 - std::cos(turn / 2));
   for (const double deviation : chord_deviations(poses, kReach)) {
@@ -331,21 +290,22 @@ TEST_CASE("the chord of an even curve leaves it by its sagitta, and that of the 
 TEST_CASE("the chord's deviation is that of the formula where the curve is uneven") {
   const double quarter = std::numbers::pi / 2;
   SECTION("a turn on the spot has no curvature") {
-    const std::vector<Pose> poses{heading(0, 0, 0), heading(0, 1, 0), heading(quarter, 1, 0)};
+    const std::vector<Pose> poses{headed(0, {0, 0, 0}), headed(0, {1, 0, 0}),
+                                  headed(quarter, {1, 0, 0})};
     CHECK(chord_deviations(poses, 2)[1] == Approx(2 * (1 - std::cos(quarter / 2))));
     check_equal(chord_deviations(poses, 2)[0], 0);
   }
   SECTION("a quarter circle that is missing") {
-    const std::vector<Pose> poses{heading(0, -0.5, 0), heading(0, 0, 0), heading(quarter, 20, 20),
-                                  heading(quarter, 20, 20.5)};
+    const std::vector<Pose> poses{headed(0, {-0.5, 0, 0}), headed(0, {0, 0, 0}),
+                                  headed(quarter, {20, 20, 0}), headed(quarter, {20, 20.5, 0})};
     const double step = std::hypot(20, 20);
     CHECK(chord_deviations(poses, 2)[1] ==
           Approx(2 * (1 - std::cos(quarter / 2)) + quarter * step / 8));
   }
   SECTION("a neighbour tells of the curve only where it is a fifth as long") {
     for (const auto& [before, counts] : {std::pair{0.2, true}, std::pair{0.19, false}}) {
-      const std::vector<Pose> poses{heading(0, 0, 0), heading(0.1, before, 0),
-                                    heading(0.1, before + 1, 0)};
+      const std::vector<Pose> poses{headed(0, {0, 0, 0}), headed(0.1, {before, 0, 0}),
+                                    headed(0.1, {before + 1, 0, 0})};
       const double curvature = counts ? 0.1 / before : 0;
       CHECK(chord_deviations(poses, 2)[1] == Approx(curvature / 8).margin(1e-15));
     }

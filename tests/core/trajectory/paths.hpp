@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "support/scenes.hpp"
+
+/// Paths and parts of poses for the tests of trajectories.
+namespace clearway::test {
+
+/// A pose that is turned about z.
+inline Pose headed(double heading, const Vec3& at) { return rotation({0, 0, 1}, heading, at); }
+
+/// A pose every `step` metres along x.
+inline std::vector<Pose> straight_poses(std::size_t count, double step = 1) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    poses.push_back(translation({step * static_cast<double>(i), 0, 0}));
+  }
+  return poses;
+}
+
+/// A pose every `step` metres along a circle of curvature k, which begins at the origin along x.
+inline std::vector<Pose> circle_poses(double k, double step, std::size_t count) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double a = k * step * static_cast<double>(i);
+    poses.push_back(headed(a, {std::sin(a) / k, (1 - std::cos(a)) / k, 0}));
+  }
+  return poses;
+}
+
+inline Vec3 axis_of(const Pose& pose, int axis) {
+  return {pose.rotation[axis], pose.rotation[3 + axis], pose.rotation[6 + axis]};
+}
+
+inline double distance(const Vec3& a, const Vec3& b) { return length(a - b); }
+inline double distance(const Pose& a, const Pose& b) {
+  return distance(a.position(), b.position());
+}
+
+}  // namespace clearway::test
