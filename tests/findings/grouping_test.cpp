@@ -69,24 +69,22 @@ TEST_CASE("axes of different scales are grouped as all pairs are") {
 
 TEST_CASE("points exactly at the gap are neighbours, wherever the scan is") {
   for (const Vec3& offset : {Vec3{0, 0, 0}, Vec3{500'000, 4'000'000, 100}}) {
+    const Quantisation steps{{0.001, 0.001, 0.001}, {offset.x, offset.y, offset.z}};
     for (const double gap : {0.3, 0.1, 1.0, 0.05}) {
-      const auto steps = static_cast<std::int32_t>(std::lround(gap / 0.001));
       for (const std::int32_t more : {0, 1}) {
-        Found found;
-        found.quantisation = {{0.001, 0.001, 0.001}, {offset.x, offset.y, offset.z}};
+        Found found{.quantisation = steps};
         // A lattice whose neighbours are as far apart as the gap, or a step more.
+        const std::int32_t edge = static_cast<std::int32_t>(std::lround(gap / 0.001)) + more;
         for (std::int32_t i = 0; i < 216; ++i) {
-          const std::int32_t edge = steps + more;
           found.quanta.push_back({i % 6 * edge, i / 6 % 6 * edge, i / 36 * edge});
         }
         CHECK(check_groups(found, gap) == (more == 0 ? 1 : 216));
       }
-      // Points 0.3 m apart, on the diagonal of 0.1, 0.2 and 0.2.
-      Found slanted;
-      slanted.quantisation = {{0.001, 0.001, 0.001}, {offset.x, offset.y, offset.z}};
-      slanted.quanta = {{0, 0, 0}, {100, 200, 200}, {1000, 0, 0}, {1100, 200, 201}};
-      check_equal(check_groups(slanted, 0.3), 3);
     }
+    // Points 0.3 m apart, on the diagonal of 0.1, 0.2 and 0.2.
+    const Found slanted{.quanta = {{0, 0, 0}, {100, 200, 200}, {1000, 0, 0}, {1100, 200, 201}},
+                        .quantisation = steps};
+    check_equal(check_groups(slanted, 0.3), 3);
   }
 }
 
@@ -131,27 +129,16 @@ TEST_CASE("dense places that are just too far apart stay apart") {
 TEST_CASE("many points at few places are grouped fast") {
   Found found;
   for (std::int32_t i = 0; i < 200'000; ++i) found.quanta.push_back({i % 2 * 300, 0, i % 3 * 900});
-  const ScratchFolder folder;
-  ConflictOptions options;
-  options.threads = 2;
-  check_equal(find_conflicts(found.write(folder), found.poses, options).groups, 3);
-  options.gap = 0.299;
-  check_equal(find_conflicts(found.write(folder), found.poses, options).groups, 6);
+  check_equal(found.conflicts({.threads = 2}).groups, 3);
+  check_equal(found.conflicts({.gap = 0.299, .threads = 2}).groups, 6);
 }
 
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
-using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
-
 /// Points every 100 mm along x, in quanta of a millimetre.
-void add_row(int from, int to, int y, Quanta& out) {
-  for (int x = from; x <= to; x += 100) out.push_back({x, y, 0});
-}
-
 Quanta row(int from, int to, int y = 0) {
   Quanta out;
-  add_row(from, to, y, out);
+  for (int x = from; x <= to; x += 100) out.push_back({x, y, 0});
   return out;
 }
 
@@ -163,14 +150,13 @@ Quanta both(Quanta a, const Quanta& b) {
 /// A result with its conflicts, in a folder of its own.
 struct Grouped {
   explicit Grouped(const Quanta& quanta, std::uint64_t hash, const Clearances& clearances = {})
-      : found{.quanta = quanta, .first_pose = {}, .source = {}}, result(written(hash, clearances)) {
-    ConflictOptions options;
-    options.min_points = 4;
-    conflicts = find_conflicts(result, found.poses, options, &conflict_of, &conflict_of_near);
+      : found{.quanta = quanta, .clearance = clearances.size() > 0 ? 2.0 : 0.0},
+        result(written(hash, clearances)) {
+    conflicts =
+        find_conflicts(result, found.poses, {.min_points = 4}, &conflict_of, &conflict_of_near);
   }
 
-  Result written(std::uint64_t hash, const Clearances& clearances) {
-    if (clearances.size() > 0) found.clearance = 2;
+  Result written(std::uint64_t hash, const Clearances& clearances) const {
     ResultHeader header = found.header();
     header.environment_hash = hash;
     header.environment_points = 1000;
@@ -192,68 +178,69 @@ ConflictMatch match(const Quanta& a, const Quanta& b, double gap = 0.3) {
   return match_conflicts(Grouped(a, 1).grouped(), Grouped(b, 2).grouped(), gap, 0);
 }
 
+/// What a match says, as in "same 1-1, gone 2".
+std::string text_of(const ConflictMatch& match) {
+  std::string out;
+  const auto add = [&](const std::string& what, const auto& number) {
+    out += (out.empty() ? "" : ", ") + what + " " + std::to_string(number);
+  };
+  for (const auto& [a, b] : match.same) add("same " + std::to_string(a) + " as", b);
+  for (const std::uint32_t id : match.added) add("added", id);
+  for (const std::uint32_t id : match.gone) add("gone", id);
+  for (const auto& part : match.grown) add("grown", part.conflict);
+  for (const std::uint32_t id : match.shrunk) add("shrunk", id);
+  for (const std::size_t group : match.small) add("small", group);
+  for (const NotSearched& one : match.not_searched) add("not searched", one.conflict);
+  return out;
+}
+
 }  // namespace
 
 TEST_CASE("conflicts are the same where their points are near, and otherwise new or gone") {
-  const ConflictMatch found =
-      match(both(row(0, 1000), row(5000, 6000)), both(row(20, 1020), row(9000, 9900)));
-  CHECK(found.same == Pairs{{1, 1}});
-  CHECK(found.gone == Ids{2});
-  CHECK(found.added == Ids{2});
-  CHECK(found.grown.empty());
-  CHECK(found.not_searched.empty());
-}
-
-TEST_CASE("a point is near up to the gap, and not a step beyond") {
-  for (const int axis : {0, 1, 2}) {
-    for (const int sign : {-1, 1}) {
-      for (const int away : {300, 301}) {
-        Quanta a, b;
-        for (int i = 0; i < 4; ++i) {
-          a.push_back({0, 0, 0});
-          a.back()[static_cast<std::size_t>((axis + 1) % 3)] = 50 * i;
-          b.push_back(a.back());
-          b.back()[static_cast<std::size_t>(axis)] = sign * away;
-        }
-        CHECK(match(a, b).same == (away == 300 ? Pairs{{1, 1}} : Pairs{}));
-      }
-    }
-  }
-}
-
-TEST_CASE("a new thing in the box of an old one is new") {
-  // Two sides of a rectangle, and a row near its opposite corner.
+  const Quanta one = row(0, 1000), whole = row(0, 3000), few = row(0, 300), away = row(7000, 7200);
+  const Quanta halves = both(row(0, 1300), row(1700, 3000)), two = both(one, row(5000, 6000));
+  // Two sides of a rectangle, whose box holds a row near its opposite corner.
   Quanta bent = row(0, 4000);
   for (int y = 100; y <= 2000; y += 100) bent.push_back({0, y, 0});
-  const ConflictMatch found = match(bent, row(3000, 3600, 1800));
-  CHECK(found.same.empty());
-  CHECK(found.added == Ids{1});
-  CHECK(found.gone == Ids{1});
-}
-
-TEST_CASE("conflicts that split or merge are the same, and a new part is named") {
-  const Quanta whole = row(0, 3000), halves = both(row(0, 1300), row(1700, 3000));
-  const ConflictMatch split = match(whole, halves);
-  CHECK(split.same == Pairs{{1, 1}, {1, 2}});
-  CHECK((split.added.empty() && split.gone.empty() && split.grown.empty()));
-  const ConflictMatch merged = match(halves, whole);
-  CHECK(merged.same == Pairs{{1, 1}, {2, 1}});
-  CHECK((merged.added.empty() && merged.gone.empty() && merged.grown.empty()));
-  const ConflictMatch longer = match(row(0, 1000), whole);
-  CHECK(longer.same == Pairs{{1, 1}});
+  struct Row {
+    Quanta before, after;
+    const char* match;
+    double gap = 0.3;
+  };
+  for (const Row& given :
+       {Row{two, both(row(20, 1020), row(9000, 9900)), "same 1 as 1, added 2, gone 2"},
+        Row{bent, row(3000, 3600, 1800), "added 1, gone 1"},
+        Row{whole, halves, "same 1 as 1, same 1 as 2"},
+        Row{halves, whole, "same 1 as 1, same 2 as 1"}, Row{one, whole, "same 1 as 1, grown 1"},
+        // Small groups count as points, but are no partners.
+        Row{one, row(0, 200), "shrunk 1"}, Row{few, both(few, away), "same 1 as 1, small 0"},
+        Row{both(few, away), both(few, away), "same 1 as 1"},
+        // Equal points match whatever the gap.
+        Row{two, two, "same 1 as 1, same 2 as 2", 1e-300},
+        Row{two, two, "same 1 as 1, same 2 as 2", 1e-12}, Row{two, two, "same 1 as 1, same 2 as 2"},
+        Row{{}, {}, ""}, Row{{}, one, "added 1"}, Row{one, {}, "gone 1"}}) {
+    check_equal(text_of(match(given.before, given.after, given.gap)), given.match);
+  }
+  const ConflictMatch longer = match(one, whole);
   REQUIRE(longer.grown.size() == 1);
-  check_equal(longer.grown[0].conflict, 1);
   check_equal(longer.grown[0].points, 17);  // from 1,400 on
   check_equal(longer.grown[0].source, 14);
   CHECK(longer.grown[0].box.lo.x == Approx(1.4));
 }
 
-TEST_CASE("small groups count as points, but are no partners") {
-  const Quanta conflict = row(0, 1000), small = row(0, 200), elsewhere = row(7000, 7200);
-  CHECK(match(conflict, small).shrunk == Ids{1});
-  CHECK(match(conflict, small).gone.empty());
-  CHECK(match(row(0, 300), both(row(0, 300), elsewhere)).small == std::vector<std::size_t>{0});
-  CHECK(match(both(row(0, 300), elsewhere), both(row(0, 300), elsewhere)).small.empty());
+TEST_CASE("a point is near up to the gap, and not a step beyond") {
+  for (const int axis : {0, 1, 2}) {
+    for (const int away : {-301, -300, 300, 301}) {
+      Quanta a, b;
+      for (int i = 0; i < 4; ++i) {
+        a.push_back({0, 0, 0});
+        a.back()[static_cast<std::size_t>((axis + 1) % 3)] = 50 * i;
+        b.push_back(a.back());
+        b.back()[static_cast<std::size_t>(axis)] = away;
+      }
+      CHECK(match(a, b).same.size() == (std::abs(away) == 300 ? 1 : 0));
+    }
+  }
 }
 
 TEST_CASE("what was just free before is not a new part") {
@@ -267,21 +254,8 @@ TEST_CASE("what was just free before is not a new part") {
   }
   const Grouped a(row(0, 1000), 1, clearances), b(row(0, 2400), 2);
   const ConflictMatch found = match_conflicts(a.grouped(), b.grouped(), 0.3, 0.02);
-  CHECK(found.same == Pairs{{1, 1}});
-  REQUIRE(found.grown.size() == 1);
-  CHECK(found.grown[0].box.lo.x == Approx(2.3));  // beyond the gap of the last one at 1.9
-}
-
-TEST_CASE("equal points match whatever the gap, and nothing matches nothing") {
-  const Quanta a = both(row(0, 1000), row(5000, 6000));
-  for (const double gap : {1e-300, 1e-12, 0.3}) {
-    const ConflictMatch found = match(a, a, gap);
-    check_equal(found.same.size(), 2);
-    CHECK((found.added.empty() && found.gone.empty() && found.grown.empty()));
-  }
-  CHECK(match({}, {}).same.empty());
-  CHECK(match({}, row(0, 1000)).added == Ids{1});
-  CHECK(match(row(0, 1000), {}).gone == Ids{1});
+  check_equal(text_of(found), "same 1 as 1, grown 1");
+  CHECK(found.grown.at(0).box.lo.x == Approx(2.3));  // beyond the gap of the last one at 1.9
 }
 
 namespace {
@@ -304,11 +278,6 @@ std::optional<double> spacing_by_all_pairs(const Found& found) {
   return distances[(distances.size() - 1) / 2];
 }
 
-Conflicts grouped_as_usual(const Found& found, const ConflictOptions& options = {}) {
-  const ScratchFolder folder;
-  return find_conflicts(found.write(folder), found.poses, options);
-}
-
 }  // namespace
 
 TEST_CASE("the usual grouping follows from how far apart the colliding points are") {
@@ -318,14 +287,10 @@ TEST_CASE("the usual grouping follows from how far apart the colliding points ar
     Found found;
     const double size = 0.2 * static_cast<double>(1 + below(random, 40));
     for (const Vec3& p : random_points(random, {{0, 0, 0}, {size, size, size / 4}}, 400)) {
-      found.quanta.push_back({});
-      for (int k = 0; k < 3; ++k) {
-        found.quanta.back()[static_cast<std::size_t>(k)] =
-            static_cast<std::int32_t>(std::lround(p[k] * 1000));
-      }
+      found.quanta.push_back(millimetres(p));
       if (seed % 2 == 0) found.quanta.push_back(found.quanta[below(random, found.quanta.size())]);
     }
-    const Conflicts conflicts = grouped_as_usual(found);
+    const Conflicts conflicts = found.conflicts();
     REQUIRE(conflicts.spacing);
     const double s = spacing_by_all_pairs(found).value();
     CHECK(*conflicts.spacing == Approx(s).epsilon(1e-9));
@@ -342,7 +307,7 @@ TEST_CASE("a sign of nine points in a thin scan is a conflict, and noise in a de
     for (int k = 0; k < 3; ++k) thin.quanta.push_back({0, 250 * i, 3000 + 250 * k});
   }
   for (int k = 0; k < 8; ++k) thin.quanta.push_back({5000, 0, 250 * k});
-  const Conflicts found = grouped_as_usual(thin);
+  const Conflicts found = thin.conflicts();
   REQUIRE(found.listed.size() == 2);
   check_equal(found.listed[0].points, 9);
   CHECK(found.gap == Approx(0.75));
@@ -354,7 +319,7 @@ TEST_CASE("a sign of nine points in a thin scan is a conflict, and noise in a de
     for (int k = 0; k < 50; ++k) dense.quanta.push_back({0, 20 * i, 20 * k});
   }
   for (int k = 0; k < 3; ++k) dense.quanta.push_back({9000, 100 * k, 0});
-  const Conflicts wall = grouped_as_usual(dense);
+  const Conflicts wall = dense.conflicts();
   check_equal(wall.listed.size(), 1);
   check_equal(wall.small_groups, 1);
   check_equal(wall.gap, 0.3);
@@ -365,20 +330,18 @@ TEST_CASE("with few places, or where nothing collides, the grouping is fixed") {
   Found few;
   for (int k = 0; k < 9; ++k) few.quanta.push_back({5000 * k, 0, 0});
   for (int k = 0; k < 9; ++k) few.quanta.push_back({5000 * k, 0, 0});
-  const Conflicts found = grouped_as_usual(few);
+  const Conflicts found = few.conflicts();
   check_equal(found.listed.size(), 9);
   check_equal(found.gap, 0.3);
   check_equal(found.min_points, 1);
   CHECK_FALSE(found.spacing);
   few.quanta.push_back({5000 * 9, 0, 0});
-  CHECK(grouped_as_usual(few).spacing == 5.0);
-  check_equal(grouped_as_usual(few).listed.size(), 1);
-  check_equal(grouped_as_usual({}).gap, 0.3);
-  check_equal(grouped_as_usual({}).min_points, 10);
+  CHECK(few.conflicts().spacing == 5.0);
+  check_equal(few.conflicts().listed.size(), 1);
+  check_equal(Found().conflicts().gap, 0.3);
+  check_equal(Found().conflicts().min_points, 10);
   // What is asked for is taken, and the other of the two stays as usual.
-  ConflictOptions options;
-  options.gap = 1;
-  const Conflicts asked = grouped_as_usual(few, options);
+  const Conflicts asked = few.conflicts({.gap = 1});
   check_equal(asked.gap, 1);
   check_equal(asked.min_points, 1);
 }

@@ -5,15 +5,15 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "clearway/clearway.hpp"
+#include "findings/searched_scene.hpp"
 #include "io/files/input_error.hpp"
 #include "support/bytes/las_bytes.hpp"
-#include "support/scenes.hpp"
-#include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"
 
 /// Scans of a road at several epochs, and the ledger of the conflicts of a vehicle that drives
@@ -81,13 +81,6 @@ inline RoadScan road(double end = 26) {
   return RoadScan().add(out);
 }
 
-/// The road with panels: a point that is deeper in the way is farther from 1 m.
-inline RoadScan road_with(const std::vector<std::vector<Vec3>>& panels) {
-  RoadScan scan = road();
-  for (const auto& one : panels) scan.add(one);
-  return scan;
-}
-
 /// What is asked of a scan.
 struct RoadQuestion {
   Query query;
@@ -96,12 +89,9 @@ struct RoadQuestion {
   std::string date = "2026-06-30";
 
   RoadQuestion() {
-    Bodies bodies;
-    bodies.add(box_surface({{-2, -1, 0.2}, {2, 1, 3}}));
-    std::vector<Pose> poses;
-    // Steps of the radius, so that nothing between two poses could be missed.
-    for (int i = 0; i <= 200; ++i) poses.push_back(translation({0.1 * i, 0, 0}));
-    query = bodies.query(std::move(poses), 0.1);
+    // Steps of the radius, so that nothing between two poses could be missed
+    query = solid_box({{-2, -1, 0.2}, {2, 1, 3}}, {}, 0.1);
+    for (int i = 0; i <= 200; ++i) query.poses.push_back(translation({0.1 * i, 0, 0}));
     query.first_pose = true;
     query.clearance = 0.3;
   }
@@ -134,21 +124,18 @@ struct LedgerScene {
     const auto output = folder / (name + ".result.h5");
     search(store, asked.query, output, {.device = Device::kCpu, .threads = 2});
     const Result result(output);
-    ConflictOptions find;
-    find.threads = 2;
-    if (asked.knows_model) find.model = &asked.query.model;
+    const ConflictOptions find{.model = asked.knows_model ? &asked.query.model : nullptr,
+                               .threads = 2};
     std::vector<std::uint32_t> conflict_of, conflict_of_near;
     const Conflicts conflicts =
         find_conflicts(result, asked.query.poses, find, &conflict_of, &conflict_of_near);
-    LedgerOptions options;
-    options.table = table();
-    options.update = update;
-    options.worse_by = asked.worse_by;
-    options.date = asked.date;
-    options.store = asked.knows_store ? &store : nullptr;
-    options.threads = 2;
     return apply_ledger({result, conflicts, conflict_of, conflict_of_near, asked.query.poses}, find,
-                        options);
+                        {.table = table(),
+                         .update = update,
+                         .worse_by = asked.worse_by,
+                         .date = asked.date,
+                         .store = asked.knows_store ? &store : nullptr,
+                         .threads = 2});
   }
 
   /// The place of the scanner of all scans from here on.
@@ -156,26 +143,18 @@ struct LedgerScene {
 
   /// Sets the cells of a column in all rows, or in one.
   void set(const std::string& column, const std::string& value, int row = -1) const {
-    std::vector<std::vector<std::string>> lines;
-    std::string text = this->text();
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = text.find('\n', at);
-      std::vector<std::string>& cells = lines.emplace_back(1);
-      for (const char c : text.substr(at, end - at)) {
-        if (c == ',') {
-          cells.emplace_back();
-        } else {
-          cells.back() += c;
-        }
-      }
-      at = end + 1;
-    }
-    std::size_t index = 0;
-    while (lines[0][index] != column) ++index;
+    std::istringstream lines(text());
     std::string out;
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      if (i > 0 && (row < 0 || static_cast<std::size_t>(row) + 1 == i)) lines[i][index] = value;
-      for (std::size_t k = 0; k < lines[i].size(); ++k) out += (k > 0 ? "," : "") + lines[i][k];
+    std::ptrdiff_t index = 0;
+    int number = -1;
+    for (std::string line; std::getline(lines, line); ++number) {
+      std::istringstream cells(line + ",");
+      std::ptrdiff_t at = 0;
+      for (std::string cell; std::getline(cells, cell, ','); ++at) {
+        if (number < 0 && cell == column) index = at;
+        const bool is_set = number >= 0 && at == index && (row < 0 || row == number);
+        out += (at > 0 ? "," : "") + (is_set ? value : cell);
+      }
       out += "\n";
     }
     write(out);

@@ -20,6 +20,8 @@
 #include "findings/ledger/ledger_files.hpp"
 #include "findings/ledger_scene.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
+#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -33,25 +35,6 @@ const std::string kHeader =
 std::string with(std::string text, char from, char to) {
   for (char& c : text) c = c == from ? to : c;
   return text;
-}
-
-std::string refusal(const std::string& text) {
-  try {
-    LedgerTable(text, "L.csv");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-/// The message with which a run refuses a ledger.
-std::string refused(LedgerScene& scene, const RoadScan& scan) {
-  try {
-    scene.run(scan, RoadQuestion());
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "";
 }
 
 /// The calls of the system that change files or their names.
@@ -104,40 +87,50 @@ std::optional<bool> killed_at(int at, const Work& work) {
   }
 }
 
-RoadScan one_panel() { return road_with({panel(10, 0.95)}); }
+RoadScan one_panel() { return road().add(panel(10, 0.95)); }
+RoadScan two_panels() { return one_panel().add(panel(15, 0.95)); }
+
+/// A ledger of one panel.
+struct Begun : LedgerScene {
+  Begun() { update(one_panel()); }
+  Ledger update(const RoadScan& scan) { return run(scan, RoadQuestion()); }
+};
+
+void check_update_refused(Begun& scene, const std::string& words) {
+  check_refused<InputError>([&] { scene.update(one_panel()); }, words);
+}
 
 }  // namespace
 
 TEST_CASE("days are read in the forms of spreadsheets, and ambiguous ones as the earlier day") {
-  struct Row {
-    const char* text;
-    const char* day;  ///< null: no day
-  };
-  const std::vector<Row> rows{{"2026-06-30", "2026-06-30"},
-                              {" 2026-6-3 ", "2026-06-03"},
-                              {"2026-06-30T12:00:00Z", "2026-06-30"},
-                              {"2026-06-30 00:00:00", "2026-06-30"},
-                              {"2026/06/30", "2026-06-30"},
-                              {"30.06.2026", "2026-06-30"},
-                              {"3.6.26", "2026-06-03"},
-                              {"30/06/2026", "2026-06-30"},
-                              {"06/30/2026", "2026-06-30"},
-                              {"07/06/2026", "2026-06-07"},
-                              {"06/07/2026", "2026-06-07"},
-                              {"05/05/2026", "2026-05-05"},
-                              {"30-06-2026", "2026-06-30"},
-                              {"30-06-26", nullptr},
-                              {"2026.06.30", nullptr},
-                              {"31.06.2026", nullptr},
-                              {"13/13/2026", nullptr},
-                              {"2026-02-29", nullptr},
-                              {"soon", nullptr},
-                              {"46203", nullptr},
-                              {"", nullptr}};
-  for (const Row& row : rows) {
-    CAPTURE(row.text);
-    const auto read = day_of(row.text);
-    CHECK((read ? text_of(read->day) : "") == (row.day != nullptr ? row.day : ""));
+  for (const auto& row : text_rows(R"(
+    2026-06-30 | 2026-06-30
+    2026-6-3   | 2026-06-03
+    2026-06-30T12:00:00Z | 2026-06-30
+    2026-06-30 00:00:00  | 2026-06-30
+    2026/06/30 | 2026-06-30
+    30.06.2026 | 2026-06-30
+    3.6.26     | 2026-06-03
+    30/06/2026 | 2026-06-30
+    06/30/2026 | 2026-06-30
+    07/06/2026 | 2026-06-07
+    06/07/2026 | 2026-06-07
+    05/05/2026 | 2026-05-05
+    30-06-2026 | 2026-06-30
+    30-06-26   |
+    2026.06.30 |
+    31.06.2026 |
+    13/13/2026 |
+    2026-02-29 |
+    soon       |
+    46203      |
+               |
+  )")) {
+    const RowName name(row[0]);
+    for (const std::string& text : {row[0], " " + row[0] + " "}) {
+      const auto read = day_of(text);
+      check_equal(read ? text_of(read->day) : "", row[1]);
+    }
   }
 }
 
@@ -147,11 +140,9 @@ TEST_CASE("a table of a spreadsheet is kept byte for byte, except for the cells 
       "\"\"no\"\"\",,1.0,2,3,0,0,0,left,,0.1,";
   for (const std::string end : {"\n", "\r\n", "\r"}) {
     for (const std::string& mark : {std::string(), std::string("\xEF\xBB\xBF")}) {
-      std::string text = mark + kHeader + row + "2026-01-05,2026-01-06\n\n";
-      if (end != "\n") {
-        std::string other;
-        for (const char c : text) other += c == '\n' ? end : std::string(1, c);
-        text = other;
+      std::string text;
+      for (const char c : mark + kHeader + row + "2026-01-05,2026-01-06\n\n") {
+        text += c == '\n' ? end : std::string(1, c);
       }
       LedgerTable table(text, "L.csv");
       REQUIRE(table.rows() == 1);
@@ -186,11 +177,8 @@ TEST_CASE("semicolons, decimal commas and the form of days are kept, and further
 }
 
 TEST_CASE("a table that is none of a ledger is refused with line and column") {
-  struct Row {
-    std::string text, words;
-  };
   const std::string cells = ",,,,1,2,3,0,0,0,left,,0.1,2026-01-05,2026-01-06\n";
-  const std::vector<Row> rows{
+  const std::pair<std::string, const char*> rows[] = {
       {"", "is empty"},
       {"a,b\n", "line 1: lacks the column key"},
       {with(kHeader, 'z', 'x'), "line 1: "},
@@ -202,15 +190,13 @@ TEST_CASE("a table that is none of a ledger is refused with line and column") {
       {kHeader + "1,open,\"cut", "a quote is not closed"},
       {"\xFF\xFEk", "UTF-16"},
       {"PK\x03\x04", "spreadsheets"}};
-  for (const Row& row : rows) {
-    CAPTURE(row.text);
-    CHECK_THAT(refusal(row.text), Contains(row.words));
+  for (const auto& [text, words] : rows) {
+    check_refused<InputError>([&] { LedgerTable(text, "L.csv"); }, words);
   }
 }
 
 TEST_CASE("a ledger without its places accepts nothing") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   scene.set("status", "accepted");
   std::filesystem::remove(scene.places());
   const Ledger ledger = scene.run(one_panel(), RoadQuestion(), false);
@@ -219,22 +205,20 @@ TEST_CASE("a ledger without its places accepts nothing") {
 }
 
 TEST_CASE("a row that somebody wrote by hand accepts nothing, and stays") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   scene.set("status", "open");
   scene.write(scene.text() + "by hand,accepted,me,the pole at the gate,,,,,,,,,,,,\n");
-  const Ledger ledger = scene.run(one_panel(), RoadQuestion());
+  const Ledger ledger = scene.update(one_panel());
   CHECK(counts_of(ledger) == "open 1, not-searched 1");
   CHECK_THAT(scene.text(), Contains("by hand,accepted,me,the pole at the gate"));
 }
 
 TEST_CASE("table and places of different runs are refused, and nothing is changed") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   const std::string first = scene.text();
   const auto kept = scene.folder / "kept.h5";
   std::filesystem::copy_file(scene.places(), kept);
-  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  scene.update(two_panels());
   const std::string second = scene.text();
 
   SECTION("the table of the run before") { scene.write(first); }
@@ -247,47 +231,28 @@ TEST_CASE("table and places of different runs are refused, and nothing is change
   }
   SECTION("a place was changed") { scene.set("x", "11.5", 0); }
   const std::string before = scene.text();
-  CHECK_THAT(refused(scene, one_panel()), Contains("are of different runs"));
+  check_update_refused(scene, "are of different runs");
   CHECK(scene.text() == before);
 }
 
 TEST_CASE("sorted rows and changed cells of people are no other run") {
-  LedgerScene scene;
-  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  Begun scene;
+  scene.update(two_panels());
   scene.set("owner", "me");
   scene.set("status", "accepted", 0);
   std::string text = scene.text();
   const std::size_t line = text.find('\n') + 1, next = text.find('\n', line) + 1;
   text = text.substr(0, line) + text.substr(next) + text.substr(line, next - line);
   scene.write(text);
-  const Ledger ledger =
-      scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion(), true);
-  CHECK(counts_of(ledger) == "new 1, accepted 1");
+  CHECK(counts_of(scene.update(two_panels())) == "new 1, accepted 1");
   CHECK(scene.text() == text);
-}
-
-TEST_CASE("an update that is killed between its two files is noticed, and can be completed") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
-  const std::string before = scene.text();
-  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
-  // As it is when only the places have been renamed.
-  const auto partial = scene.folder / "L.csv.partial";
-  write_text(partial, scene.text());
-  scene.write(before);
-  const std::string message = refused(scene, one_panel());
-  CHECK_THAT(message, Contains("an update was interrupted"));
-  CHECK_THAT(message, Contains("L.csv.partial: rename it to L.csv"));
-  std::filesystem::rename(partial, scene.table());
-  CHECK(refused(scene, one_panel()).empty());
 }
 
 TEST_CASE(
     "an update that is killed at any moment leaves the old ledger, the new one, or a refusal") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   const std::string old_table = scene.text(), old_places = text_of_file(scene.places());
-  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), RoadQuestion());
+  scene.update(two_panels());
   const std::string new_table = scene.text();
   const LedgerFiles files = read_ledger(scene.table(), "m");
   REQUIRE(files.table.rows() == 2);
@@ -311,7 +276,7 @@ TEST_CASE(
       CHECK(read.places.size() == (is_new ? 2 : 1));
       ++(is_new ? after : before);
     } catch (const InputError& error) {
-      CHECK_THAT(error.what(), Contains("an update was interrupted"));
+      check_says(error.what(), "an update was interrupted ... L.csv.partial: rename it to L.csv");
       std::filesystem::rename(scene.folder / "L.csv.partial", scene.table());
       CHECK(read_ledger(scene.table(), "m").places.size() == 2);
       CHECK(scene.text() == new_table);
@@ -325,19 +290,17 @@ TEST_CASE(
 }
 
 TEST_CASE("a first update that is killed between its two files can be completed") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   std::filesystem::rename(scene.table(), scene.folder / "L.csv.partial");
-  CHECK_THAT(refused(scene, one_panel()), Contains("L.csv.partial: rename it to L.csv"));
+  check_update_refused(scene, "L.csv.partial: rename it to L.csv");
   std::filesystem::rename(scene.folder / "L.csv.partial", scene.table());
-  CHECK(refused(scene, one_panel()).empty());
+  scene.update(one_panel());
 }
 
 TEST_CASE("a table whose places are left alone is not begun anew") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   std::filesystem::remove(scene.table());
-  CHECK_THAT(refused(scene, one_panel()), Contains("is missing, and its places are there"));
+  check_update_refused(scene, "is missing, and its places are there");
 }
 
 TEST_CASE("a ledger is made by an update only") {
@@ -347,21 +310,19 @@ TEST_CASE("a ledger is made by an update only") {
 }
 
 TEST_CASE("a link to a table is the table itself, with the places beside it") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   scene.set("status", "accepted");
   const auto real = scene.folder / "kept.csv";
   std::filesystem::rename(scene.table(), real);
   std::filesystem::rename(scene.places(), scene.folder / "kept.places.h5");
   std::filesystem::create_symlink(real, scene.table());
-  CHECK(counts_of(scene.run(one_panel(), RoadQuestion())) == "accepted 1");
+  CHECK(counts_of(scene.update(one_panel())) == "accepted 1");
   CHECK(std::filesystem::is_symlink(scene.table()));
   CHECK_FALSE(std::filesystem::exists(scene.places()));
 }
 
 TEST_CASE("an update waits for that of another process, and says so where it takes too long") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   std::optional<LedgerUpdate> other(std::in_place, scene.table());
   constexpr std::chrono::milliseconds kBrief(60);
   CHECK_THROWS_WITH(LedgerUpdate(scene.table(), nullptr, kBrief),
@@ -370,26 +331,16 @@ TEST_CASE("an update waits for that of another process, and says so where it tak
     std::this_thread::sleep_for(kBrief);
     other.reset();
   });
-  scene.run(one_panel(), RoadQuestion());
+  scene.update(one_panel());
   ending.join();
   CHECK_FALSE(std::filesystem::exists(scene.folder / "L.csv.partial"));
   CHECK_FALSE(std::filesystem::exists(scene.folder / "L.places.h5.partial"));
 }
 
 TEST_CASE("damaged places are refused") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
+  Begun scene;
   std::string bytes = text_of_file(scene.places());
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write_text(scene.places(), bytes);
-  CHECK(!refused(scene, one_panel()).empty());
-}
-
-TEST_CASE("the same scan twice changes nothing in either file") {
-  LedgerScene scene;
-  scene.run(one_panel(), RoadQuestion());
-  const std::string table = scene.text(), places = text_of_file(scene.places());
-  scene.run(one_panel(), RoadQuestion());
-  CHECK(scene.text() == table);
-  CHECK(text_of_file(scene.places()) == places);
+  CHECK_THROWS_AS(scene.update(one_panel()), InputError);
 }

@@ -1,60 +1,18 @@
 // What becomes of the conflicts of a ledger in the next scan, case by case.
-#include <functional>
-#include <optional>
-#include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "clearway/clearway.hpp"
 #include "findings/ledger_scene.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
+#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
-
-/// Two epochs: what is scanned, what the owner writes in between, and what the second one shows.
-struct Case {
-  const char* name;
-  std::vector<std::vector<Vec3>> before;
-  std::function<void(LedgerScene&)> edit;
-  RoadScan after;
-  std::function<void(RoadQuestion&)> ask;
-  std::string counts;
-  Verdict outside;
-};
-
-using Panels = std::vector<std::vector<Vec3>>;
-
-std::function<void(LedgerScene&)> status(const std::string& value) {
-  return [value](LedgerScene& scene) { scene.set("status", value); };
-}
-
-std::function<void(LedgerScene&)> accepted_until(const std::string& day) {
-  return [day](LedgerScene& scene) {
-    scene.set("status", "accepted");
-    scene.set("until", day);
-  };
-}
-
-/// The status of each row.
-std::function<void(LedgerScene&)> statuses(const std::vector<std::string>& values) {
-  return [values](LedgerScene& scene) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      scene.set("status", values[i], static_cast<int>(i));
-    }
-  };
-}
-
-std::vector<Vec3> noisy(std::vector<Vec3> points, double noise, unsigned seed) {
-  Random random(seed);
-  std::uniform_real_distribution<double> within(-noise, noise);
-  for (Vec3& p : points) {
-    for (int k = 0; k < 3; ++k) p[k] += within(random);
-  }
-  return points;
-}
 
 /// A kerb that is bent: its box holds places that are far from all of its points.
 std::vector<Vec3> bent_kerb() {
@@ -67,203 +25,166 @@ std::vector<Vec3> bent_kerb() {
   return out;
 }
 
-const auto kAccepted = status("accepted");
-const auto kNothing = [](LedgerScene&) {};
-const auto kSame = [](RoadQuestion&) {};
+/// A scan of the road with what a text lists, separated by ";": a panel as "from left", with length
+/// and step where they are not usual, alone or after "noisy", "class5" or "withheld"; a "point" or
+/// a "withheld-point"; "kerb"; and "until", for a road that ends there.
+RoadScan scan_of(const std::string& text) {
+  RoadScan scan = road();
+  std::istringstream items(text);
+  for (std::string item; std::getline(items, item, ';');) {
+    std::istringstream words(item);
+    std::string kind;
+    std::vector<double> n;
+    for (std::string word; words >> word;) {
+      if (std::isalpha(static_cast<unsigned char>(word[0])) != 0) {
+        kind = word;
+      } else {
+        n.push_back(std::stod(word));
+      }
+    }
+    if (kind == "kerb") {
+      scan.add(bent_kerb());
+    } else if (kind == "until") {
+      scan = road(n.at(0));
+    } else if (kind == "point" || kind == "withheld-point") {
+      scan.add({{n.at(0), n.at(1), n.at(2)}}, 1, kind != "point");
+    } else {
+      std::vector<Vec3> points =
+          panel(n.at(0), n.at(1), n.size() > 2 ? n[2] : 1, n.size() > 3 ? n[3] : 0.05);
+      Random random(1);
+      for (Vec3& p : points) {
+        for (int k = 0; kind == "noisy" && k < 3; ++k) p[k] += uniform(random, -0.005, 0.005);
+      }
+      scan.add(points, kind == "class5" ? 5 : 1, kind == "withheld");
+    }
+  }
+  return scan;
+}
 
-std::vector<Case> cases() {
-  const std::vector<Vec3> one = panel(10, 0.95);
-  const Panels known{one};
-  const auto same = road_with({one});
-  const auto clear = road();
-  std::vector<Case> out{
-      // A conflict that is still there.
-      {"new, and nobody has looked at it", known, kNothing, same, kSame, "new 1",
-       Verdict::kConflict},
-      {"open", known, status("open"), same, kSame, "open 1", Verdict::kConflict},
-      {"accepted", known, kAccepted, same, kSame, "accepted 1", Verdict::kClear},
-      {"a status in capitals and with blanks", known, status(" Accepted "), same, kSame,
-       "accepted 1", Verdict::kClear},
-      {"resolved, and there again", known, status("resolved"), same, kSame, "open 1",
-       Verdict::kConflict},
-      {"accepted until yesterday", known, accepted_until("2026-06-29"), same, kSame, "expired 1",
-       Verdict::kConflict},
-      {"accepted until today", known, accepted_until("2026-06-30"), same, kSame, "accepted 1",
-       Verdict::kClear},
-      {"accepted until a day in German form", known, accepted_until("29.06.2026"), same, kSame,
-       "expired 1", Verdict::kConflict},
-      {"a day that can be read in two ways is the earlier one", known, accepted_until("07/06/2026"),
-       same, kSame, "expired 1", Verdict::kConflict},
-      {"an expired day of an open row says nothing", known,
-       [](LedgerScene& scene) {
-         scene.set("status", "open");
-         scene.set("until", "2020-01-01");
-       },
-       same, kSame, "open 1", Verdict::kConflict},
+/// Calls `each` with name and value of all words such as "until=2026-06-30".
+template <typename Each>
+void for_settings(const std::string& text, const Each& each) {
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    const std::size_t at = word.find('=');
+    each(word.substr(0, at), word.substr(at + 1));
+  }
+}
 
-      // The same obstacle, scanned again.
-      {"rescanned with noise of 5 mm", known, kAccepted,
-       road_with({noisy(panel(10.02, 0.95), 0.005, 1)}), kSame, "accepted 1", Verdict::kClear},
-      {"rescanned with fewer points", known, kAccepted, road_with({panel(10.03, 0.95, 0.9, 0.1)}),
-       kSame, "accepted 1", Verdict::kClear},
-      {"rescanned with more points", known, kAccepted, road_with({panel(10, 0.95, 1, 0.02)}), kSame,
-       "accepted 1", Verdict::kClear},
-
-      // Moved obstacles.
-      {"moved by 0.2 m along the path", known, kAccepted, road_with({panel(10.2, 0.95)}), kSame,
-       "accepted 1", Verdict::kClear},
-      {"moved by 0.4 m along the path", known, kAccepted, road_with({panel(10.4, 0.95)}), kSame,
-       "new 1, accepted 1", Verdict::kConflict},
-      {"moved by 5 m along the path", known, kAccepted, road_with({panel(15, 0.95)}), kSame,
-       "new 1, gone 1", Verdict::kConflict},
-      {"1 cm nearer", known, kAccepted, road_with({panel(10, 0.94)}), kSame, "accepted 1",
-       Verdict::kClear},
-      {"3 cm nearer", known, kAccepted, road_with({panel(10, 0.92)}), kSame, "worse 1",
-       Verdict::kConflict},
-      {"3 cm nearer, which was allowed", known, kAccepted, road_with({panel(10, 0.92)}),
-       [](RoadQuestion& asked) { asked.worse_by = 0.05; }, "accepted 1", Verdict::kClear},
-      {"longer by 1 m", known, kAccepted, road_with({panel(10, 0.95, 2)}), kSame,
-       "new 1, accepted 1", Verdict::kConflict},
-      {"a new pole in the box of an accepted kerb",
-       {bent_kerb()},
-       kAccepted,
-       road_with({bent_kerb(), panel(9, 0, 0.2)}),
-       kSame,
-       "new 1, accepted 1",
-       Verdict::kConflict},
-
-      // Groups that fall apart or grow together.
-      {"split into two groups",
-       {panel(10, 0.95, 2)},
-       kAccepted,
-       road_with({panel(10, 0.95, 0.6), panel(11.4, 0.95, 0.6)}),
-       kSame,
-       "accepted 1",
-       Verdict::kClear},
-      {"two accepted ones merged into one",
-       {panel(10, 0.95, 0.6), panel(11.4, 0.95, 0.6)},
-       kAccepted,
-       road_with({panel(10, 0.95, 2)}),
-       kSame,
-       "new 1, accepted 2",
-       Verdict::kConflict},
-      {"a part is gone",
-       {panel(10, 0.95, 2)},
-       kAccepted,
-       road_with({panel(10, 0.95, 0.6)}),
-       kSame,
-       "accepted 1",
-       Verdict::kClear},
-
-      // Two rows on one place.
-      {"two conflicts, of which one is accepted",
-       {one, panel(15, 0.95)},
-       statuses({"accepted", "open"}),
-       road_with({one, panel(15, 0.95)}),
-       kSame,
-       "open 1, accepted 1",
-       Verdict::kConflict},
-
-      // Nothing is found there.
-      {"gone", known, kAccepted, clear, kSame, "gone 1", Verdict::kClear},
-      {"an open one is gone", known, status("open"), clear, kSame, "gone 1", Verdict::kClear},
-      {"a resolved one stays resolved", known, status("resolved"), clear, kSame, "resolved 1",
-       Verdict::kClear},
-      {"half a path", known, kAccepted, clear,
-       [](RoadQuestion& asked) { asked.query.poses.resize(50); }, "not-searched 1",
-       Verdict::kClear},
-      {"a part of the path, on which some places collide", known, kAccepted, clear,
-       [](RoadQuestion& asked) { asked.query.poses.resize(85); }, "not-searched 1",
-       Verdict::kClear},
-      {"a smaller radius",
-       {panel(10, 1.05)},
-       kAccepted,
-       clear,
-       [](RoadQuestion& asked) { asked.query.radius = 0.04; },
-       "not-searched 1",
-       Verdict::kClear},
-      {"a smaller vehicle", known, kAccepted, clear,
-       [](RoadQuestion& asked) {
-         for (Vec3& v : asked.query.model.vertices) v.y *= 0.5;
-       },
-       "not-searched 1", Verdict::kClear},
-      {"a floor above the place", known, kAccepted, clear,
-       [](RoadQuestion& asked) { asked.query.floor = 1.5; }, "not-searched 1", Verdict::kClear},
-      {"an ignored class over the place", known, kAccepted, road().add(one, 5),
-       [](RoadQuestion& asked) { asked.query.ignore_classes = {5}; }, "not-searched 1",
-       Verdict::kClear},
-      {"an ignored class elsewhere", known, kAccepted, road().add(panel(15, 0.95), 5),
-       [](RoadQuestion& asked) { asked.query.ignore_classes = {5}; }, "gone 1", Verdict::kClear},
-      {"an ignored box over a part of the place", known, kAccepted, clear,
-       [](RoadQuestion& asked) {
-         asked.query.ignore_boxes = {{{10.8, 0.8, 0.5}, {11.5, 1.2, 2.5}}};
-       },
-       "not-searched 1", Verdict::kClear},
-      {"withheld points at the place", known, kAccepted, road().add(one, 1, true), kSame,
-       "not-searched 1", Verdict::kClear},
-      {"withheld points in the cube beside it", known, kAccepted,
-       road().add({{11.9, 1.9, 2.9}}, 1, true), kSame, "not-searched 1", Verdict::kClear},
-      {"withheld points elsewhere", known, kAccepted, road().add({{16, 1.9, 2.9}}, 1, true), kSame,
-       "gone 1", Verdict::kClear},
-      {"a store without the place", known, kAccepted, road(8), kSame, "not-searched 1",
-       Verdict::kUndecided},
-      {"without the store", known, kAccepted, clear,
-       [](RoadQuestion& asked) { asked.knows_store = false; }, "not-searched 1", Verdict::kClear},
-      {"without the model", known, kAccepted, clear,
-       [](RoadQuestion& asked) { asked.knows_model = false; }, "not-searched 1", Verdict::kClear},
-      {"a few points are left, too few to be listed", known, kAccepted,
-       road_with({{{10.5, 0.95, 1.5}, {10.5, 0.95, 1.6}}, panel(15, 0.95)}), kSame,
-       "new 1, accepted 1", Verdict::kConflict},
-
-      // Another question.
-      {"a larger radius", known, kAccepted, same,
-       [](RoadQuestion& asked) { asked.query.radius = 0.12; }, "worse 1", Verdict::kConflict},
-      {"a floor", known, kAccepted, same, [](RoadQuestion& asked) { asked.query.floor = 0.1; },
-       "worse 1", Verdict::kConflict},
-      {"another model", known, kAccepted, same,
-       [](RoadQuestion& asked) { asked.query.model.vertices.front().x += 0.01; }, "worse 1",
-       Verdict::kConflict},
-      {"no distances any more", known, kAccepted, same,
-       [](RoadQuestion& asked) { asked.query.clearance = 0; }, "worse 1", Verdict::kConflict},
-
-      // What is outside of the accepted conflicts.
-      {"a stray point beside an accepted conflict", known, kAccepted,
-       road_with({one, {{15, 0.95, 1.5}}}), kSame, "accepted 1", Verdict::kConflict},
-  };
-  return out;
+RoadQuestion question_of(const std::string& text) {
+  RoadQuestion asked;
+  Query& query = asked.query;
+  for_settings(text, [&](const std::string& name, const std::string& value) {
+    if (value == "unknown") {
+      (name == "store" ? asked.knows_store : asked.knows_model) = false;
+      return;
+    }
+    const double number = std::stod(value);
+    if (name == "worse-by") asked.worse_by = number;
+    if (name == "poses") query.poses.resize(static_cast<std::size_t>(number));
+    if (name == "radius") query.radius = number;
+    if (name == "clearance") query.clearance = number;
+    if (name == "floor") query.floor = number;
+    if (name == "ignored-class") query.ignore_classes = {static_cast<std::uint8_t>(number)};
+    if (name == "ignored-from") query.ignore_boxes = {{{number, 0.8, 0.5}, {11.5, 1.2, 2.5}}};
+    if (name == "longer") query.model.vertices.front().x += number;
+    if (name == "width") {
+      for (Vec3& v : query.model.vertices) v.y *= number;
+    }
+  });
+  return asked;
 }
 
 }  // namespace
 
 TEST_CASE("what becomes of the rows of a ledger in the next scan") {
-  for (const Case& one : cases()) {
-    CAPTURE(one.name);
+  // The first scan; what the owner writes into all rows, or into one after the other; the second
+  // scan, and what is asked of it; the counts that it shows, and the verdict of the rest.
+  for (const auto& row : text_rows(R"(
+    new, and nobody has looked at it        | 10 .95 |                     | 10 .95 | | new 1      | conflict
+    open                                    | 10 .95 | status=open         | 10 .95 | | open 1     | conflict
+    accepted                                | 10 .95 | status=accepted     | 10 .95 | | accepted 1 | clear
+    resolved, and there again               | 10 .95 | status=resolved     | 10 .95 | | open 1     | conflict
+    accepted until yesterday                | 10 .95 | status=accepted until=2026-06-29 | 10 .95 | | expired 1  | conflict
+    accepted until today                    | 10 .95 | status=accepted until=2026-06-30 | 10 .95 | | accepted 1 | clear
+    accepted until a day in German form     | 10 .95 | status=accepted until=29.06.2026 | 10 .95 | | expired 1  | conflict
+    of two ways to read a day, the earlier  | 10 .95 | status=accepted until=07/06/2026 | 10 .95 | | expired 1  | conflict
+    an expired day of an open row           | 10 .95 | status=open until=2020-01-01     | 10 .95 | | open 1     | conflict
+    rescanned with noise of 5 mm            | 10 .95 | status=accepted     | noisy 10.02 .95 | | accepted 1 | clear
+    rescanned with fewer points             | 10 .95 | status=accepted     | 10.03 .95 .9 .1 | | accepted 1 | clear
+    rescanned with more points              | 10 .95 | status=accepted     | 10 .95 1 .02    | | accepted 1 | clear
+    moved by 0.2 m along the path           | 10 .95 | status=accepted     | 10.2 .95        | | accepted 1 | clear
+    moved by 0.4 m along the path           | 10 .95 | status=accepted     | 10.4 .95        | | new 1, accepted 1 | conflict
+    moved by 5 m along the path             | 10 .95 | status=accepted     | 15 .95          | | new 1, gone 1     | conflict
+    1 cm nearer                             | 10 .95 | status=accepted     | 10 .94          | | accepted 1        | clear
+    3 cm nearer                             | 10 .95 | status=accepted     | 10 .92          | | worse 1           | conflict
+    3 cm nearer, which was allowed          | 10 .95 | status=accepted     | 10 .92 | worse-by=.05 | accepted 1   | clear
+    longer by 1 m                           | 10 .95 | status=accepted     | 10 .95 2        | | new 1, accepted 1 | conflict
+    a pole in the box of an accepted kerb   | kerb   | status=accepted     | kerb; 9 0 .2    | | new 1, accepted 1 | conflict
+    split into two groups                   | 10 .95 2 | status=accepted   | 10 .95 .6; 11.4 .95 .6 | | accepted 1 | clear
+    two accepted ones merged into one       | 10 .95 .6; 11.4 .95 .6 | status=accepted | 10 .95 2 | | new 1, accepted 2 | conflict
+    a part is gone                          | 10 .95 2 | status=accepted   | 10 .95 .6       | | accepted 1        | clear
+    two conflicts, of which one is accepted | 10 .95; 15 .95 | status=accepted status=open | 10 .95; 15 .95 | | open 1, accepted 1 | conflict
+    gone                                    | 10 .95 | status=accepted     |                 | | gone 1            | clear
+    an open one is gone                     | 10 .95 | status=open         |                 | | gone 1            | clear
+    a resolved one stays resolved           | 10 .95 | status=resolved     |                 | | resolved 1        | clear
+    half a path                             | 10 .95 | status=accepted     | | poses=50    | not-searched 1 | clear
+    a path on which some places collide     | 10 .95 | status=accepted     | | poses=85    | not-searched 1 | clear
+    a smaller radius                        | 10 1.05 | status=accepted    | | radius=.04  | not-searched 1 | clear
+    a smaller vehicle                       | 10 .95 | status=accepted     | | width=.5    | not-searched 1 | clear
+    a floor above the place                 | 10 .95 | status=accepted     | | floor=1.5   | not-searched 1 | clear
+    an ignored class over the place         | 10 .95 | status=accepted     | class5 10 .95 | ignored-class=5 | not-searched 1 | clear
+    an ignored class elsewhere              | 10 .95 | status=accepted     | class5 15 .95 | ignored-class=5 | gone 1 | clear
+    an ignored box over a part of it        | 10 .95 | status=accepted     | | ignored-from=10.8 | not-searched 1 | clear
+    withheld points at the place            | 10 .95 | status=accepted     | withheld 10 .95   | | not-searched 1 | clear
+    withheld points in the cube beside it   | 10 .95 | status=accepted     | withheld-point 11.9 1.9 2.9 | | not-searched 1 | clear
+    withheld points elsewhere               | 10 .95 | status=accepted     | withheld-point 16 1.9 2.9 | | gone 1 | clear
+    a store without the place               | 10 .95 | status=accepted     | until 8 | | not-searched 1 | undecided
+    without the store                       | 10 .95 | status=accepted     | | store=unknown | not-searched 1 | clear
+    without the model                       | 10 .95 | status=accepted     | | model=unknown | not-searched 1 | clear
+    too few points to be listed are left    | 10 .95 | status=accepted     | point 10.5 .95 1.5; point 10.5 .95 1.6; 15 .95 | | new 1, accepted 1 | conflict
+    a larger radius                         | 10 .95 | status=accepted     | 10 .95 | radius=.12  | worse 1 | conflict
+    a floor                                 | 10 .95 | status=accepted     | 10 .95 | floor=.1    | worse 1 | conflict
+    another model                           | 10 .95 | status=accepted     | 10 .95 | longer=.01  | worse 1 | conflict
+    no distances any more                   | 10 .95 | status=accepted     | 10 .95 | clearance=0 | worse 1 | conflict
+    a stray point beside an accepted one    | 10 .95 | status=accepted     | 10 .95; point 15 .95 1.5 | | accepted 1 | conflict
+  )",
+                                   7)) {
+    const RowName name(row[0]);
     LedgerScene scene;
-    const RoadQuestion asked;
-    RoadQuestion later;
-    one.ask(later);
-    const Ledger first = scene.run(road_with(one.before), asked);
-    CHECK(first.counts()[static_cast<std::size_t>(LedgerStatus::kNew)] == one.before.size());
-    one.edit(scene);
-    const Ledger second = scene.run(one.after, later, false);
+    scene.run(scan_of(row[1]), RoadQuestion());
+    int rows = 0;
+    for_settings(row[2], [&](const std::string& column, const std::string& value) {
+      const bool is_next = column == "status" && rows++ > 0;
+      scene.set(column, value, is_next ? rows - 1 : -1);
+    });
+    const Ledger second = scene.run(scan_of(row[3]), question_of(row[4]), false);
     CAPTURE(reasons_of(second));
-    CHECK(counts_of(second) == one.counts);
-    CHECK(second.outside.verdict == one.outside);
-    for (const LedgerRow& row : second.rows) {
-      const bool needs_reason = row.shown != row.status || row.shown == LedgerStatus::kExpired;
-      if (needs_reason) CHECK(!row.why.empty());
+    check_equal(counts_of(second), row[5]);
+    check_equal(name_of(second.outside.verdict), row[6]);
+    for (const LedgerRow& shown : second.rows) {
+      const bool needs_reason =
+          shown.shown != shown.status || shown.shown == LedgerStatus::kExpired;
+      if (needs_reason) CHECK(!shown.why.empty());
     }
   }
+}
+
+TEST_CASE("a status in capitals and with blanks is read") {
+  LedgerScene scene;
+  scene.run(scan_of("10 .95"), RoadQuestion());
+  scene.set("status", " Accepted ");
+  CHECK(counts_of(scene.run(scan_of("10 .95"), RoadQuestion(), false)) == "accepted 1");
 }
 
 TEST_CASE("what creeps nearer by a centimetre in each scan is worse in the end") {
   LedgerScene scene;
   const RoadQuestion asked;
-  scene.run(road_with({panel(10, 0.95)}), asked);
+  scene.run(scan_of("10 .95"), asked);
   scene.set("status", "accepted");
   std::string shown;
   for (int epoch = 1; epoch <= 4; ++epoch) {
-    const Ledger ledger = scene.run(road_with({panel(10, 0.95 - 0.01 * epoch)}), asked);
+    const Ledger ledger = scene.run(scan_of("10 " + std::to_string(0.95 - 0.01 * epoch)), asked);
     shown += counts_of(ledger) + "; ";
   }
   CHECK(shown == "accepted 1; accepted 1; worse 1; worse 1; ");
@@ -272,9 +193,9 @@ TEST_CASE("what creeps nearer by a centimetre in each scan is worse in the end")
 TEST_CASE("a worse conflict is accepted anew by opening and accepting its row") {
   LedgerScene scene;
   const RoadQuestion asked;
-  scene.run(road_with({panel(10, 0.95)}), asked);
+  scene.run(scan_of("10 .95"), asked);
   scene.set("status", "accepted");
-  const RoadScan nearer = road_with({panel(10, 0.9)});
+  const RoadScan nearer = scan_of("10 .9");
   CHECK(counts_of(scene.run(nearer, asked)) == "worse 1");
   scene.set("status", "open");
   CHECK(counts_of(scene.run(nearer, asked)) == "open 1");
@@ -285,15 +206,15 @@ TEST_CASE("a worse conflict is accepted anew by opening and accepting its row") 
 TEST_CASE("an earlier day or an older scan shows of nothing that it is gone") {
   LedgerScene scene;
   RoadQuestion asked;
-  const auto scan_of = [](RoadScan scan, std::uint16_t year) {
+  const auto scanned_in = [](std::uint16_t year, const std::string& panels) {
+    RoadScan scan = scan_of(panels);
     scan.year = year;
     return scan;
   };
-  const RoadScan before = road_with({panel(10, 0.95)});
-  scene.run(scan_of(before, 2024), asked);
+  scene.run(scanned_in(2024, "10 .95"), asked);
   const auto judged = [&](std::uint16_t year, const std::string& date, bool update = false) {
     asked.date = date;
-    return counts_of(scene.run(scan_of(road(), year), asked, update));
+    return counts_of(scene.run(scanned_in(year, ""), asked, update));
   };
   CHECK(judged(2025, "2026-06-29") == "not-searched 1");
   CHECK(judged(2022, "2026-07-01") == "not-searched 1");
@@ -301,7 +222,7 @@ TEST_CASE("an earlier day or an older scan shows of nothing that it is gone") {
   CHECK(judged(0, "2026-07-01") == "gone 1");  // its file does not say when it was scanned
   // An update by an older scan that shows the row forgets nothing of the later one.
   asked.date = "2026-03-01";
-  scene.run(scan_of(before, 2022), asked);
+  scene.run(scanned_in(2022, "10 .95"), asked);
   CHECK(judged(2023, "2026-07-01") == "not-searched 1");
   CHECK(judged(2025, "2026-06-29") == "not-searched 1");
   CHECK(judged(2025, "2026-07-01", true) == "gone 1");
@@ -310,7 +231,7 @@ TEST_CASE("an earlier day or an older scan shows of nothing that it is gone") {
 TEST_CASE("what is gone is resolved, and open when it is there again") {
   LedgerScene scene;
   const RoadQuestion asked;
-  const RoadScan there = road_with({panel(10, 0.95)});
+  const RoadScan there = scan_of("10 .95");
   scene.run(there, asked);
   scene.set("status", "accepted");
   CHECK(counts_of(scene.run(road(), asked)) == "gone 1");
@@ -327,9 +248,9 @@ TEST_CASE("what is gone is resolved, and open when it is there again") {
 TEST_CASE("a run that is repeated on its day shows the same, and leaves both files as they are") {
   LedgerScene scene;
   RoadQuestion asked;
-  scene.run(road_with({panel(10, 0.95), panel(15, 0.95)}), asked);
+  scene.run(scan_of("10 .95; 15 .95"), asked);
   scene.set("status", "accepted");
-  const RoadScan later = road_with({panel(15, 0.95), panel(18, 0.95)});
+  const RoadScan later = scan_of("15 .95; 18 .95");
   const Ledger first = scene.run(later, asked);
   CHECK(counts_of(first) == "new 1, accepted 1, gone 1");
   const std::string table = scene.text(), places = text_of_file(scene.places());
@@ -349,10 +270,10 @@ TEST_CASE("a run that is repeated on its day shows the same, and leaves both fil
 TEST_CASE("two rows on one place: a conflict is accepted only if both accept it") {
   LedgerScene scene;
   const RoadQuestion asked;
-  const RoadScan small = road_with({panel(10, 0.95)});
+  const RoadScan small = scan_of("10 .95");
   scene.run(small, asked);
   scene.set("status", "accepted");
-  CHECK(counts_of(scene.run(road_with({panel(10, 0.95, 2)}), asked)) == "new 1, accepted 1");
+  CHECK(counts_of(scene.run(scan_of("10 .95 2"), asked)) == "new 1, accepted 1");
   Ledger both = scene.run(small, asked, false);
   CHECK(counts_of(both) == "new 1, accepted 1");
   CHECK(both.conflicts[0].status == LedgerStatus::kNew);
@@ -370,10 +291,10 @@ TEST_CASE("parts of an open row get rows of their own, and those of an accepted 
     CAPTURE(accepted);
     LedgerScene scene;
     const RoadQuestion asked;
-    scene.run(road_with({panel(10, 0.95, 2)}), asked);
+    scene.run(scan_of("10 .95 2"), asked);
     scene.set("status", accepted ? "accepted" : "open");
     scene.set("owner", "me");
-    const RoadScan parts = road_with({panel(10, 0.95, 0.6), panel(11.4, 0.95, 0.5)});
+    const RoadScan parts = scan_of("10 .95 .6; 11.4 .95 .5");
     const Ledger ledger = scene.run(parts, asked);
     CHECK(counts_of(ledger) == (accepted ? "accepted 1" : "open 2"));
     CHECK(counts_of(scene.run(parts, asked)) == (accepted ? "accepted 1" : "open 2"));
@@ -405,12 +326,12 @@ TEST_CASE("near points of an error budget outside of what is accepted leave the 
   RoadQuestion asked;
   asked.query.error_scan = 0.02;
   asked.query.sigmas = 2;
-  const RoadScan first = road_with({panel(10, 0.95)});
+  const RoadScan first = scan_of("10 .95");
   scene.run(first, asked);
   scene.set("status", "accepted");
   CHECK(scene.run(first, asked, false).outside.verdict == Verdict::kClear);
   // Nearer than the radius and the budget, but farther than the radius.
-  const Ledger ledger = scene.run(road_with({panel(10, 0.95), panel(15, 1.11)}), asked, false);
+  const Ledger ledger = scene.run(scan_of("10 .95; 15 1.11"), asked, false);
   CHECK(ledger.outside.verdict == Verdict::kUndecided);
   CHECK(ledger.outside.near > 0);
 }

@@ -1,9 +1,9 @@
 #include "core/trajectory/motion_tree.hpp"
 
 #include <cmath>
-#include <random>
 
 #include "core/geometry/predicate.hpp"
+#include "core/trajectory/paths.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -14,21 +14,13 @@ namespace {
 
 const Box kBodyOfTree{{-2, -1, 0}, {3, 1, 1.5}};
 
-Pose turned(double angle, const Vec3& p) {
-  return {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
-          {p.x, p.y, p.z}};
-}
-
-double distance(const Vec3& a, const Vec3& b) { return std::sqrt(squared_distance(a, b)); }
-
 /// Checks that every node covers its poses, holds its mid and halves into its children, and that
 /// its delta bounds the motion of random model points, between poses up to the next pose.
 void check_tree(const std::vector<Pose>& poses, bool between_poses) {
   const MotionTree tree(poses, kBodyOfTree, between_poses);
   REQUIRE(tree.nodes().size() == 2 * poses.size() - 1);
   CHECK(tree.nodes()[0].count == poses.size());
-  std::mt19937_64 random(3);
-  std::uniform_real_distribution<double> unit(0, 1);
+  Random random(3);
   bool covered = true, bounded = true;
   for (std::uint32_t i = 0; i < tree.nodes().size(); ++i) {
     const MotionNode& node = tree.nodes()[i];
@@ -42,10 +34,10 @@ void check_tree(const std::vector<Pose>& poses, bool between_poses) {
       covered &= node.later == 0 && (between_poses || node.delta == 0);
     }
     for (int k = 0; k < 3; ++k) {
-      const Vec3 m{-2 + 5 * unit(random), -1 + 2 * unit(random), 1.5 * unit(random)};
+      const Vec3 m = random_point(random, kBodyOfTree);
       const bool moves_on = between_poses && node.first + node.count < poses.size();
       const auto pose =
-          node.first + static_cast<std::uint32_t>(unit(random) * (node.count + (moves_on ? 1 : 0)));
+          node.first + static_cast<std::uint32_t>(below(random, node.count + (moves_on ? 1u : 0u)));
       bounded &= distance(transform(poses[pose], m), transform(poses[node.mid], m)) <= node.delta;
     }
   }
@@ -57,22 +49,22 @@ void check_tree(const std::vector<Pose>& poses, bool between_poses) {
 
 TEST_CASE("a motion tree covers its poses and bounds their motion") {
   std::vector<Pose> poses;
-  SECTION("one pose") { poses.push_back(turned(1, {1, 2, 3})); }
-  SECTION("the same pose again and again") { poses.assign(100, turned(0.3, {5e6, 2e6, 1e3})); }
+  SECTION("one pose") { poses.push_back(headed(1, {1, 2, 3})); }
+  SECTION("the same pose again and again") { poses.assign(100, headed(0.3, {5e6, 2e6, 1e3})); }
   SECTION("a curve") {
-    for (int i = 0; i < 1000; ++i) poses.push_back(turned(i * 0.003, {i * 0.01, i * 0.002, 0}));
+    for (int i = 0; i < 1000; ++i) poses.push_back(headed(i * 0.003, {i * 0.01, i * 0.002, 0}));
   }
   SECTION("turning on the spot") {
-    for (int i = 0; i < 333; ++i) poses.push_back(turned(i * 0.02, {0, 0, 0}));
+    for (int i = 0; i < 333; ++i) poses.push_back(headed(i * 0.02, {0, 0, 0}));
   }
   SECTION("stops, jumps and back") {
     for (int i = 0; i < 500; ++i) {
       const double far = i > 100 && i < 200 ? 1e4 : 0;
-      poses.push_back(turned(0, {i < 300 ? 1.0 : i * 0.1, far, 0}));
+      poses.push_back(headed(0, {i < 300 ? 1.0 : i * 0.1, far, 0}));
     }
   }
   SECTION("steps that double") {
-    for (int i = 0; i < 300; ++i) poses.push_back(turned(0, {std::ldexp(1e-30, i), 0, 0}));
+    for (int i = 0; i < 300; ++i) poses.push_back(headed(0, {std::ldexp(1e-30, i), 0, 0}));
   }
   check_tree(poses, false);
   check_tree(poses, true);
@@ -80,8 +72,8 @@ TEST_CASE("a motion tree covers its poses and bounds their motion") {
 
 TEST_CASE("a jump separates the motion tree's halves") {
   std::vector<Pose> poses;
-  for (int i = 0; i < 10; ++i) poses.push_back(turned(0, {i * 0.1, 0, 0}));
-  for (int i = 0; i < 90; ++i) poses.push_back(turned(0, {1000 + i * 0.1, 0, 0}));
+  for (int i = 0; i < 10; ++i) poses.push_back(headed(0, {i * 0.1, 0, 0}));
+  for (int i = 0; i < 90; ++i) poses.push_back(headed(0, {1000 + i * 0.1, 0, 0}));
   const MotionTree tree(poses, kBodyOfTree);
   check_equal(tree.nodes()[1].count, 10);
   CHECK(tree.nodes()[1].delta < 1);
@@ -99,16 +91,14 @@ TEST_CASE("pulling back uses the true inverse of a matrix that is not quite rigi
 }
 
 TEST_CASE("singular values of a pull-back are bounds") {
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> unit(-1, 1);
+  Random random(5);
   for (int i = 0; i < 200; ++i) {
     Pose pose{};
-    for (double& r : pose.rotation) r = unit(random);
+    for (double& r : pose.rotation) r = uniform(random, -1, 1);
     for (int k = 0; k < 3; ++k) pose.rotation[4 * k] += 2;  // far from singular
     const MotionTree tree(std::span(&pose, 1), kBodyOfTree);
-    const Vec3 v{unit(random), unit(random), unit(random)};
-    const double before = distance(v, {0, 0, 0});
-    const double after = distance(transform(pose, v), {0, 0, 0});
+    const Vec3 v = random_point(random, {{-1, -1, -1}, {1, 1, 1}});
+    const double before = length(v), after = length(transform(pose, v));
     CHECK(after >= tree.inverse_pose(0).least * before * (1 - 1e-12));
     CHECK(after <= tree.inverse_pose(0).greatest * before * (1 + 1e-12));
   }

@@ -41,8 +41,7 @@ void check_resampled(const std::vector<Pose>& poses, const std::vector<Pose>& ou
   bool bounded = true;
   for (std::size_t i = 1; i < out.size(); ++i) {
     const Vec3 m = random_point(random, kBodyToResample);
-    const double d2 = squared_distance(transform(out[i - 1], m), transform(out[i], m));
-    bounded &= std::sqrt(d2) <= max_motion;
+    bounded &= length(transform(out[i - 1], m) - transform(out[i], m)) <= max_motion;
   }
   CHECK(bounded);
 }
@@ -65,7 +64,7 @@ TEST_CASE("resampling bounds the motion and keeps the poses") {
   SECTION("far from the origin") { add(60, 2, 5e6, 0.5); }
   SECTION("printed with six digits") {
     add(60, 1, 1e3, 1);
-    std::transform(poses.begin(), poses.end(), poses.begin(), printed_with_six_digits);
+    print_with_six_digits(poses);
   }
   SECTION("scaled and sheared") {
     add(30, 1, 0, 1);
@@ -147,14 +146,11 @@ TEST_CASE("resampling refuses what takes too many poses and says what does not")
   CHECK_THROWS_AS(resampled(poses, 1e-5), UsageError);
 }
 
-TEST_CASE("resampling refuses a bound below the rounding far from the origin") {
-  const std::vector<Pose> poses{translation({5e6, 0, 0}), translation({5e6 + 1e-6, 0, 0})};
-  check_refused([&] { return resampled(poses, 1e-9); }, "rounding");
-}
-
-TEST_CASE("resampling refuses motion that is no number") {
-  const std::vector<Pose> poses{translation({1e300, 0, 0}), translation({-1e300, 0, 0})};
-  CHECK_THROWS_AS(resampled(poses, 0.1), InputError);
+TEST_CASE("resampling refuses a bound below the rounding, and motion that is no number") {
+  const std::vector<Pose> far{translation({5e6, 0, 0}), translation({5e6 + 1e-6, 0, 0})};
+  check_refused([&] { return resampled(far, 1e-9); }, "rounding");
+  const std::vector<Pose> endless{translation({1e300, 0, 0}), translation({-1e300, 0, 0})};
+  CHECK_THROWS_AS(resampled(endless, 0.1), InputError);
 }
 
 TEST_CASE("thinning and resampling stays near the poses that were dropped") {
@@ -175,19 +171,13 @@ TEST_CASE("thinning and resampling stays near the poses that were dropped") {
   CHECK(worst < 0.01);
 }
 
-namespace {
-
-const Box kBodyToThin{{-2, -1, 0}, {3, 1, 1.5}};
-
-}  // namespace
-
 TEST_CASE("every dropped pose is near the kept one that stands for it") {
   Random random(31);
   std::vector<Pose> poses;
   SECTION("a smooth path") { poses = smooth_path(random, {{0, 0, 0}, {20, 20, 5}}, 2000); }
   SECTION("far away, printed with six digits") {
     poses = smooth_path(random, {{5e6, 5e6, 0}, {5e6 + 20, 5e6 + 20, 5}}, 2000);
-    std::transform(poses.begin(), poses.end(), poses.begin(), printed_with_six_digits);
+    print_with_six_digits(poses);
   }
   SECTION("wild") {
     for (int i = 0; i < 300; ++i) {
@@ -195,7 +185,7 @@ TEST_CASE("every dropped pose is near the kept one that stands for it") {
     }
   }
   for (const double max_motion : {0.02, 0.3, 5.0}) {
-    const auto kept = thin_trajectory(poses, kBodyToThin, max_motion);
+    const auto kept = thin_trajectory(poses, kBodyToResample, max_motion);
     REQUIRE_FALSE(kept.empty());
     check_equal(kept.front(), 0);
     CHECK(std::is_sorted(kept.begin(), kept.end()));
@@ -203,13 +193,12 @@ TEST_CASE("every dropped pose is near the kept one that stands for it") {
     for (std::size_t i = 0, k = 0; i < poses.size(); ++i) {
       const bool is_kept = k + 1 < kept.size() && kept[k + 1] == i;
       if (is_kept) {
-        needed &= motion_bound(kBodyToThin, poses[kept[k]], poses[i]) > max_motion;
+        needed &= motion_bound(kBodyToResample, poses[kept[k]], poses[i]) > max_motion;
         ++k;
       }
       for (int n = 0; n < 4; ++n) {
-        const Vec3 m = random_point(random, kBodyToThin);
-        const double d2 = squared_distance(transform(poses[kept[k]], m), transform(poses[i], m));
-        near &= std::sqrt(d2) <= max_motion;
+        const Vec3 m = random_point(random, kBodyToResample);
+        near &= length(transform(poses[kept[k]], m) - transform(poses[i], m)) <= max_motion;
       }
     }
     CHECK(near);
@@ -217,21 +206,15 @@ TEST_CASE("every dropped pose is near the kept one that stands for it") {
   }
 }
 
-TEST_CASE("thinning a straight line keeps every so-many-th pose") {
+TEST_CASE("thinning keeps every so-many-th pose of a line, and one of a stop") {
   std::vector<Pose> poses;
   for (int i = 0; i < 100; ++i) poses.push_back(translation({i * 1.0, 0, 0}));
-  const auto kept = thin_trajectory(poses, kBodyToThin, 3.5);
+  const auto kept = thin_trajectory(poses, kBodyToResample, 3.5);
   REQUIRE(kept.size() == 25);
   for (std::size_t k = 0; k < kept.size(); ++k) CHECK(kept[k] == 4 * k);
-}
-
-TEST_CASE("thinning collapses stops, even far from the origin") {
-  std::vector<Pose> poses(100, translation({5e6, 5e6, 0}));
+  poses.assign(100, translation({5e6, 5e6, 0}));
   poses.resize(150, translation({5e6 + 1, 5e6, 0}));
-  CHECK(thin_trajectory(poses, kBodyToThin, 1e-12) == std::vector<std::size_t>{0, 100});
-}
-
-TEST_CASE("thinning few poses") {
-  CHECK(thin_trajectory({}, kBodyToThin, 1).empty());
-  check_equal(thin_trajectory(std::vector<Pose>{translation({1, 2, 3})}, kBodyToThin, 1).size(), 1);
+  CHECK(thin_trajectory(poses, kBodyToResample, 1e-12) == std::vector<std::size_t>{0, 100});
+  CHECK(thin_trajectory({}, kBodyToResample, 1).empty());
+  check_equal(thin_trajectory({poses.data(), 1}, kBodyToResample, 1).size(), 1);
 }

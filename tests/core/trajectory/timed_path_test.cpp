@@ -5,6 +5,7 @@
 #include <random>
 
 #include "clearway/error.hpp"
+#include "core/trajectory/paths.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -14,12 +15,6 @@ using namespace clearway::test;
 namespace {
 
 using Where = TimedPath::Where;
-
-/// A pose at a place, turned by an angle about z.
-Pose turned_pose(double x, double y, double z, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {{c, -s, 0, s, c, 0, 0, 0, 1}, {x, y, z}};
-}
 
 Vec3 place_at(const TimedPath& path, double time) {
   std::size_t step = 0;
@@ -33,53 +28,44 @@ Where where_at(const TimedPath& path, double time) {
   return path.at(time, step).where;
 }
 
-std::string timed_path_refusal(std::vector<double> times, const Vec3& lever = {},
-                               std::vector<Pose> poses = {}) {
-  while (poses.size() < 3) poses.push_back(turned_pose(0, 0, 0, 0));
-  try {
-    TimedPath(poses, std::move(times), lever, "p.txt");
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+void check_refused_times(std::vector<double> times, const std::string& words,
+                         const Vec3& lever = {}, const Pose& pose = translation({})) {
+  const std::vector<Pose> poses(3, pose);
+  check_refused<InputError>([&] { TimedPath(poses, times, lever, "p.txt"); }, words);
 }
 
 }  // namespace
 
 TEST_CASE("a timed path moves evenly in time on a line, and turns by slerp") {
   const double quarter = std::acos(0.0);
-  const std::vector<Pose> poses{turned_pose(0, 0, 0, 0), turned_pose(4, -2, 1, quarter),
-                                turned_pose(4, -2, 3, quarter)};
+  const std::vector<Pose> poses{headed(0, {0, 0, 0}), headed(quarter, {4, -2, 1}),
+                                headed(quarter, {4, -2, 3})};
   const TimedPath path(poses, {10, 10.5, 11.5}, {2, 0, 0.25}, "p.txt");
   check_equal(path.first(), 10);
   check_equal(path.last(), 11.5);
   for (const double share : {0.0, 0.125, 0.5, 0.9, 1.0}) {
     const Vec3 at = place_at(path, 10 + 0.5 * share);
-    CHECK(at.x == Approx(4 * share + 2 * std::cos(quarter * share)).margin(1e-12));
-    CHECK(at.y == Approx(-2 * share + 2 * std::sin(quarter * share)).margin(1e-12));
-    CHECK(at.z == Approx(share + 0.25).margin(1e-12));
+    check_near(at,
+               {4 * share + 2 * std::cos(quarter * share),
+                -2 * share + 2 * std::sin(quarter * share), share + 0.25},
+               1e-12);
   }
-  const Vec3 later = place_at(path, 11);
-  CHECK(later.x == Approx(4).margin(1e-12));
-  CHECK(later.y == Approx(0).margin(1e-12));
-  CHECK(later.z == Approx(2.25).margin(1e-12));
+  check_near(place_at(path, 11), {4, 0, 2.25}, 1e-12);
 }
 
 TEST_CASE("a timed path turns the shorter way round, and ignores rotations without a lever arm") {
-  const std::vector<Pose> poses{turned_pose(0, 0, 0, 3), turned_pose(0, 0, 0, -3)};
+  const std::vector<Pose> poses{headed(3, {0, 0, 0}), headed(-3, {0, 0, 0})};
   const Vec3 middle = place_at(TimedPath(poses, {0, 1}, {1, 0, 0}, "p.txt"), 0.5);
-  CHECK(middle.x == Approx(-1).margin(1e-12));
-  CHECK(middle.y == Approx(0).margin(1e-12));
+  check_near(middle, {-1, 0, 0}, 1e-12);
   const Pose mirror{{1, 0, 0, 0, 1, 0, 0, 0, -1}, {1, 2, 3}};
   const std::vector<Pose> mirrored{mirror, mirror};
   CHECK(place_at(TimedPath(mirrored, {0, 1}, {}, "p.txt"), 0.5) == Vec3{1, 2, 3});
-  check_says(timed_path_refusal({0, 1, 2}, {0, 0, 1}, {mirror, mirror, mirror}),
-             "p.txt: pose 0 (counting from 0) mirrors");
+  check_refused_times({0, 1, 2}, "p.txt: pose 0 (counting from 0) mirrors", {0, 0, 1}, mirror);
 }
 
 TEST_CASE("nothing is known beside a timed path and in its gaps") {
-  const std::vector<Pose> poses{turned_pose(0, 0, 0, 0), turned_pose(1, 0, 0, 0),
-                                turned_pose(2, 0, 0, 0), turned_pose(3, 0, 0, 0)};
+  const std::vector<Pose> poses{headed(0, {0, 0, 0}), headed(0, {1, 0, 0}), headed(0, {2, 0, 0}),
+                                headed(0, {3, 0, 0})};
   const TimedPath path(poses, {0, 1, 2.001, 2.5}, {}, "p.txt");
   CHECK(where_at(path, std::nextafter(0.0, -1.0)) == Where::kBefore);
   CHECK(where_at(path, std::nextafter(2.5, 3.0)) == Where::kAfter);
@@ -102,7 +88,7 @@ TEST_CASE("a timed path gives the same place whatever was asked before") {
   for (int i = 0; i < 50; ++i) {
     time += 0.01 + 0.001 * below(1200);
     times.push_back(time);
-    poses.push_back(turned_pose(below(100), below(100), 0, below(7)));
+    poses.push_back(headed(below(7), {below(100), below(100), 0}));
   }
   const TimedPath path(poses, times, {0.5, 0.25, 0}, "p.txt");
   std::size_t step = 0;
@@ -117,9 +103,9 @@ TEST_CASE("a timed path gives the same place whatever was asked before") {
 
 TEST_CASE("poses without ascending times are refused with the pose") {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  check_says(timed_path_refusal({}), "p.txt: its poses have no times");
-  check_says(timed_path_refusal({0, kNan, 1}), "time of pose 1 ... finite");
-  check_says(timed_path_refusal({0, 2, 1}), "pose 2  ... time 1 after 2");
-  check_says(timed_path_refusal({0, 1, 1}), "pose 2  ... ascend");
-  CHECK(timed_path_refusal({-1, 0, 1}).empty());
+  check_refused_times({}, "p.txt: its poses have no times");
+  check_refused_times({0, kNan, 1}, "time of pose 1 ... finite");
+  check_refused_times({0, 2, 1}, "pose 2  ... time 1 after 2");
+  check_refused_times({0, 1, 1}, "pose 2  ... ascend");
+  TimedPath(std::vector<Pose>(3, translation({})), {-1, 0, 1}, {}, "p.txt");
 }

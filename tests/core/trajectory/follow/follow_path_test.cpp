@@ -3,9 +3,9 @@
 #include <cmath>
 
 #include "clearway/error.hpp"
+#include "core/trajectory/paths.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/scenes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -14,29 +14,15 @@ namespace {
 
 constexpr double kPi = 3.14159265358979323846;
 
-/// A path along a circle around `centre` with its x axis forward and a pose every `step` metres.
-std::vector<Pose> circle(double radius, double step, std::size_t count, const Vec3& centre,
-                         double x_turned = 0) {
+/// A path along a circle around the origin at a height of 5, turned about z beside its direction.
+std::vector<Pose> circle(double radius, double step, std::size_t count, double turned = 0) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = step * static_cast<double>(i) / radius;
-    const Vec3 at{centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle),
-                  centre.z};
-    poses.push_back(rotation({0, 0, 1}, angle + kPi / 2 + x_turned, at));
+    poses.push_back(
+        headed(angle + kPi / 2 + turned, {radius * std::cos(angle), radius * std::sin(angle), 5}));
   }
   return poses;
-}
-
-std::vector<Pose> straight(std::size_t count, double step) {
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < count; ++i) {
-    poses.push_back(translation({step * static_cast<double>(i), 0, 0}));
-  }
-  return poses;
-}
-
-Vec3 column(const Pose& pose, int axis) {
-  return {pose.rotation[axis], pose.rotation[3 + axis], pose.rotation[6 + axis]};
 }
 
 FollowedPath follow(const std::vector<Pose>& poses, const BodyMount& mount) {
@@ -62,7 +48,7 @@ TEST_CASE("the middle of a chord of a circle is as far inside as the formula say
   // one.
   const double radius = GENERATE(80.0, 150.0, 300.0, 4000.0);
   const std::size_t count = 1001;
-  const auto poses = circle(radius, 0.1, count, {0, 0, 0});
+  const auto poses = circle(radius, 0.1, count);
   const auto body = follow(poses, BodyPivots{10.05, -10.05});
   const auto front = follow(poses, BodyStation{10.05}), rear = follow(poses, BodyStation{-10.05});
   REQUIRE(body.of.size() == count - 2 * 101);
@@ -70,9 +56,7 @@ TEST_CASE("the middle of a chord of a circle is as far inside as the formula say
   for (std::size_t k = 0; k < body.of.size(); ++k) {
     const std::size_t i = body.of[k];
     if (i < kEnds || i + kEnds >= count) continue;
-    const double* f = front.poses[i].translation;
-    const double* r = rear.poses[i - rear.of[0]].translation;
-    const double chord = std::hypot(f[0] - r[0], f[1] - r[1], f[2] - r[2]);
+    const double chord = distance(front.poses[i], rear.poses[i - rear.of[0]]);
     CHECK(chord == Approx(2 * radius * std::sin(10.05 / radius)).epsilon(1e-9));
     const double inside = radius - std::sqrt(radius * radius - chord * chord / 4);
     const double* at = body.poses[k].translation;
@@ -83,7 +67,7 @@ TEST_CASE("the middle of a chord of a circle is as far inside as the formula say
 
 TEST_CASE("the origin divides the chord as 0 divides the pivots") {
   const double radius = 120;
-  const auto poses = circle(radius, 0.1, 801, {0, 0, 5});
+  const auto poses = circle(radius, 0.1, 801);
   const BodyPivots pivots = GENERATE(BodyPivots{12.03, -4.01}, BodyPivots{3.3, -17.77},
                                      BodyPivots{12.03, 4.01}, BodyPivots{-6, 6.5});
   const auto body = follow(poses, pivots);
@@ -94,18 +78,11 @@ TEST_CASE("the origin divides the chord as 0 divides the pivots") {
       const double angle = (0.1 * static_cast<double>(i) + ahead) / radius;
       return Vec3{radius * std::cos(angle), radius * std::sin(angle), 5};
     };
-    const Vec3 front = place(pivots.front), rear = place(pivots.rear);
+    const Vec3 front = place(pivots.front), rear = place(pivots.rear), chord = front - rear;
     const double share = -pivots.rear / (pivots.front - pivots.rear);
-    const Vec3 expected = {rear.x + share * (front.x - rear.x), rear.y + share * (front.y - rear.y),
-                           5};
-    for (int axis = 0; axis < 3; ++axis) {
-      check_near(body.poses[k].translation[axis], expected[axis], 1e-9);
-    }
-    const double length = std::hypot(front.x - rear.x, front.y - rear.y);
-    const Vec3 x = column(body.poses[k], 0);
-    check_near(x.x, (front.x - rear.x) / length, 1e-9);
-    check_near(x.y, (front.y - rear.y) / length, 1e-9);
-    CHECK(column(body.poses[k], 2).z == Approx(1).epsilon(1e-12));
+    check_near(body.poses[k].position(), rear + share * chord, 1e-9);
+    check_near(axis_of(body.poses[k], 0), 1 / length(chord) * chord, 1e-9);
+    check_near(axis_of(body.poses[k], 2), {0, 0, 1}, 1e-12);
   }
 }
 
@@ -121,17 +98,16 @@ TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicula
   const auto body = follow_path(path, BodyPivots{4.2, -3.1}, 1);
   REQUIRE(body.poses.size() > 20);
   for (std::size_t k = 0; k < body.poses.size(); ++k) {
-    const Vec3 x = column(body.poses[k], 0), y = column(body.poses[k], 1),
-               z = column(body.poses[k], 2);
+    const Vec3 x = axis_of(body.poses[k], 0), y = axis_of(body.poses[k], 1),
+               z = axis_of(body.poses[k], 2);
     for (const double one : {dot(x, x), dot(y, y), dot(z, z)}) check_near(one, 1, 1e-14);
     for (const double none : {dot(x, y), dot(y, z), dot(z, x)}) check_near(none, 0, 1e-14);
-    CHECK(x.x * (y.y * z.z - y.z * z.y) + x.y * (y.z * z.x - y.x * z.z) > 0);
+    check_near(cross(x, y), z, 1e-14);
     const std::size_t i = body.of[k];
     Vec3 up{0, 0, 0};
     for (const double ahead : {4.2, -3.1}) {
-      const Vec3 one = column(path.pose_at(*path.ahead_of(i, ahead)), 2);
-      const double length = std::sqrt(dot(one, one));
-      for (int axis = 0; axis < 3; ++axis) up[axis] += one[axis] / length;
+      const Vec3 one = axis_of(path.pose_at(*path.ahead_of(i, ahead)), 2);
+      up = up + 1 / length(one) * one;
     }
     // Up, without its part along the chord, is along z and not along y.
     CHECK(dot(up, z) > 0);
@@ -140,7 +116,8 @@ TEST_CASE("a followed frame is a rotation whose up is the mean made perpendicula
 }
 
 TEST_CASE("a body at a station has the poses of the curve, and at 0 those of the path") {
-  const auto poses = circle(50, 0.5, 41, {5e5, 4e6, 0});
+  auto poses = circle(50, 0.5, 41);
+  for (Pose& pose : poses) pose.translation[0] += 5e5;
   CHECK(follow(poses, BodyStation{0}).poses == poses);
   const auto ahead = follow(poses, BodyStation{2.3});
   REQUIRE(ahead.of.size() == 36);
@@ -148,7 +125,7 @@ TEST_CASE("a body at a station has the poses of the curve, and at 0 those of the
   for (std::size_t k = 4; k < 30; ++k) {
     const double angle = (0.5 * static_cast<double>(ahead.of[k]) + 2.3) / 50;
     check_near(ahead.poses[k].translation[0] - 5e5, 50 * std::cos(angle), 1e-7);
-    CHECK(std::abs(column(ahead.poses[k], 0).x + std::sin(angle)) < 1e-7);
+    CHECK(std::abs(axis_of(ahead.poses[k], 0).x + std::sin(angle)) < 1e-7);
   }
   const auto behind = follow(poses, BodyStation{-2});
   check_equal(behind.of.front(), 4);
@@ -158,7 +135,7 @@ TEST_CASE("a body at a station has the poses of the curve, and at 0 those of the
 }
 
 TEST_CASE("warnings say where a body has no pose") {
-  const auto poses = straight(11, 1);
+  const auto poses = straight_poses(11, 1);
   const PathStations path(poses, 1);
   const BodyMount mount = BodyPivots{2.5, -1};
   const auto doubts = doubts_about(follow_path(path, mount, 1), path, mount, "wagon");
@@ -172,7 +149,7 @@ TEST_CASE("warnings say where a body has no pose") {
 }
 
 TEST_CASE("a path that turns back folds the body, and has no chord where the pivots meet") {
-  auto poses = straight(21, 1);
+  auto poses = straight_poses(21, 1);
   for (int x = 19; x >= 0; --x) poses.push_back(translation({double(x), 0, 0}));
   const auto body = follow(poses, BodyPivots{4, -4});
   // At the turning point both pivots are at x = 16.
@@ -182,14 +159,14 @@ TEST_CASE("a path that turns back folds the body, and has no chord where the piv
   check_equal(body.turned.front(), 21);
   check_equal(body.turned.back(), 36);
   for (std::size_t k = 0; k < body.of.size(); ++k) {
-    CHECK(column(body.poses[k], 0).x == (body.of[k] < 20 ? 1 : -1));
+    CHECK(axis_of(body.poses[k], 0).x == (body.of[k] < 20 ? 1 : -1));
   }
   CHECK(codes(poses, BodyPivots{4, -4}) ==
         std::vector<std::string>{"body-off-path", "body-undefined", "body-folded", "body-turned"});
 }
 
 TEST_CASE("a path driven backwards takes its pivots the other way round") {
-  const auto backwards = circle(60, 0.1, 601, {0, 0, 0}, kPi);
+  const auto backwards = circle(60, 0.1, 601, kPi);
   CHECK(codes(backwards, BodyPivots{5, -5}) ==
         std::vector<std::string>{"body-off-path", "body-turned"});
   check_equal(codes(backwards, BodyPivots{-5, 5}), {"body-off-path"});
@@ -198,7 +175,7 @@ TEST_CASE("a path driven backwards takes its pivots the other way round") {
   CHECK(codes(backwards, BodyStation{0}).empty());
   const auto body = follow(backwards, BodyPivots{-5, 5});
   for (std::size_t k = 0; k < body.of.size(); ++k) {
-    CHECK(dot(column(body.poses[k], 0), column(backwards[body.of[k]], 0)) > 0.99);
+    CHECK(dot(axis_of(body.poses[k], 0), axis_of(backwards[body.of[k]], 0)) > 0.99);
   }
 }
 
@@ -218,7 +195,7 @@ TEST_CASE("the poses of a camera are warned of") {
 }
 
 TEST_CASE("a body stands where the path stands") {
-  auto poses = straight(31, 0.5);
+  auto poses = straight_poses(31, 0.5);
   poses.insert(poses.begin() + 15, 4, poses[15]);
   const auto body = follow(poses, BodyPivots{2, -2});
   for (std::size_t k = 0; k + 1 < body.of.size(); ++k) {
@@ -239,16 +216,8 @@ TEST_CASE("a body on two pivots of one pose or of a path that goes straight up h
 }
 
 TEST_CASE("a body on two pivots refuses a path that mirrors the model") {
-  auto poses = straight(5, 1);
+  auto poses = straight_poses(5, 1);
   for (Pose& pose : poses) pose.rotation[4] = -1;
   CHECK_THROWS_AS(follow(poses, BodyPivots{1, -1}), InputError);
   check_equal(follow(poses, BodyStation{1}).poses.size(), 4);
-}
-
-TEST_CASE("followed poses do not depend on the number of threads") {
-  Random random(65);
-  const auto poses = smooth_path(random, {{0, 0, 0}, {100, 80, 10}}, 700);
-  const PathStations one(poses, 1), four(poses, 4);
-  const BodyMount mount = BodyPivots{3.3, -2.2};
-  CHECK(follow_path(one, mount, 1).poses == follow_path(four, mount, 4).poses);
 }

@@ -4,25 +4,20 @@
 
 #include "clearway/error.hpp"
 #include "core/trajectory/follow/arc_length.hpp"
+#include "core/trajectory/paths.hpp"
 #include "core/trajectory/pose_spline.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/scenes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-double distance_between(const Pose& a, const Pose& b) {
-  return std::hypot(a.translation[0] - b.translation[0], a.translation[1] - b.translation[1],
-                    a.translation[2] - b.translation[2]);
-}
-
 std::vector<double> distances_of(const std::vector<Pose>& poses) {
   std::vector<double> out;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i)
-    out.push_back(distance_between(poses[i], poses[i + 1]));
+    out.push_back(distance(poses[i], poses[i + 1]));
   return out;
 }
 
@@ -33,8 +28,7 @@ std::vector<Pose> random_path(Random& random, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) {
     if (i % 7 != 3) {
       const double step = std::pow(10, uniform(random, -3, 1));
-      const Vec3 way = random_direction(random);
-      at = {at.x + step * way.x, at.y + step * way.y, at.z + step * way.z};
+      at = at + step * random_direction(random);
     }
     poses.push_back(random_rotation(random, at));
     if (i % 11 == 5) poses.push_back(poses.back());
@@ -53,7 +47,7 @@ double polyline(const PoseSpline& spline, std::size_t way, double to, int pieces
     length += positions.velocity(to * (k + 0.5) / pieces).norm() * to / pieces;
   }
   // The velocities agree with the curve's positions.
-  const double by_positions = distance_between(curve.at(0.4999), curve.at(0.5001));
+  const double by_positions = distance(curve.at(0.4999), curve.at(0.5001));
   CHECK(positions.velocity(0.5).norm() * 2e-4 == Approx(by_positions).epsilon(1e-4).margin(4e-9));
   return length;
 }
@@ -138,22 +132,15 @@ TEST_CASE("stations stand still at a stop and take the last of its poses") {
 
 TEST_CASE("stations off the path have no place but rounding is not off") {
   const std::vector<Pose> poses{translation({0, 0, 0}), translation({3, 4, 0})};
-  const PathStations stations(poses, 1);
+  const PathStations stations(poses, 1), one({poses.data(), 1}, 1);
   CHECK_FALSE(stations.ahead_of(0, -1e-6));
   CHECK_FALSE(stations.ahead_of(1, 1e-6));
-  REQUIRE(stations.ahead_of(0, -1e-12));
-  CHECK(stations.pose_at(*stations.ahead_of(0, -1e-12)) == poses[0]);
-  REQUIRE(stations.ahead_of(1, 1e-12));
-  CHECK(stations.pose_at(*stations.ahead_of(1, 1e-12)) == poses[1]);
-}
-
-TEST_CASE("stations of one pose and of none") {
-  const std::vector<Pose> one{translation({1, 2, 3})};
-  const PathStations stations(one, 1);
-  check_equal(stations.length(), 0);
-  CHECK(stations.pose_at(*stations.ahead_of(0, 0)) == one[0]);
-  CHECK_FALSE(stations.ahead_of(0, 0.1));
-  check_equal(stations.direction_at(*stations.ahead_of(0, 0)).x, 0);
+  CHECK_FALSE(one.ahead_of(0, 0.1));
+  CHECK(stations.pose_at(stations.ahead_of(0, -1e-12).value()) == poses[0]);
+  CHECK(stations.pose_at(stations.ahead_of(1, 1e-12).value()) == poses[1]);
+  CHECK(one.pose_at(one.ahead_of(0, 0).value()) == poses[0]);
+  check_equal(one.direction_at(*one.ahead_of(0, 0)).x, 0);
+  check_equal(one.length(), 0);
   check_equal(PathStations({}, 1).length(), 0);
 }
 

@@ -202,16 +202,6 @@ TEST_CASE("coordinates of a map cost no more than their own rounding") {
   compare(LinePlan::rounded(near, 15), LinePlan::rounded(moved, 15));
 }
 
-TEST_CASE("a plan and its heights survive being moved") {
-  LinePlan plan = LinePlan::through(winding(5, 0.2));
-  const PlanPlace before = plan.at(100);
-  const LinePlan other = std::move(plan);
-  CHECK(other.at(100).at == before.at);
-  HeightCurve heights({0, 1, 2}, std::vector<double>{4, 5, 7});
-  const HeightCurve moved = std::move(heights);
-  check_equal(moved.at(1).value, 5);
-}
-
 TEST_CASE("heights on a slope or a parabola stay on it") {
   const std::vector<double> stations{0, 3, 4, 9, 15, 16.5};
   const auto heights_of = [&](const auto& height) {
