@@ -51,15 +51,6 @@ TEST_CASE("a load is stopped by the first cell that is closer than its margin") 
   // Cells from y = 2 to 2.5, z = 1 to 1.5, and from y = -3 to -2.5, z = 3 to 3.5.
   const Section section(section_of({{0, 4, 2, 3}, {1, -6, 6, 7}, {2, -6, 6, 11}, {2, 4, 2, 12}}));
   check_equal(section.cells().size(), 2);
-  const auto verdict = [&](double half, double margin) {
-    return section.check(box(-half, half, 0.1, 3), margin).verdict;
-  };
-  CHECK(verdict(1.9, 0) == SectionVerdict::kPasses);
-  CHECK(verdict(1.9, 0.1 - 1e-8) == SectionVerdict::kPasses);
-  CHECK(verdict(1.9, 0.1) == SectionVerdict::kStopped);
-  CHECK(verdict(2, 0) == SectionVerdict::kStopped);
-  CHECK(verdict(3.5, 0) == SectionVerdict::kStopped);
-
   const SectionCheck check = section.check(box(-3, 1.95, 0.1, 3), 0.2);
   REQUIRE(check.stop);
   check_equal(check.stop->first_pose, 3);
@@ -70,35 +61,72 @@ TEST_CASE("a load is stopped by the first cell that is closer than its margin") 
   CHECK(check.stops[1].cell == std::array<std::int32_t, 2>{-6, 6});
   check_equal(check.stops[2].bin, 2);
   check_equal(check.stops[2].first_pose, 11);
+  // Of the cells of a pose the lowest counts, and then the rightmost.
+  const Section several(section_of({{0, 5, 2, 3}, {0, 0, 3, 2}, {0, 2, 3, 2}, {0, -3, 4, 2}}));
+  const SectionCheck first = several.check(box(-2, 3, 0.6, 3), 0);
+  REQUIRE(first.stop);
+  check_equal(first.stop->first_pose, 2);
+  CHECK(first.stop->cell == std::array<std::int32_t, 2>{0, 3});
 }
 
-TEST_CASE("of the cells of a pose the lowest is reported, and then the rightmost") {
-  const Section section(section_of({{0, 5, 2, 3}, {0, 0, 3, 2}, {0, 2, 3, 2}, {0, -3, 4, 2}}));
-  const SectionCheck check = section.check(box(-2, 3, 0.6, 3), 0);
-  REQUIRE(check.stop);
-  check_equal(check.stop->first_pose, 2);
-  CHECK(check.stop->cell == std::array<std::int32_t, 2>{0, 3});
-}
-
-TEST_CASE("a load that leaves the window or asks for more than the margin is unknown") {
-  const Section section(section_of({{0, 7, 9, 3}}));
-  const auto check = [&](std::vector<OutlinePoint> outline, double margin) {
-    return section.check(outline, margin);
+TEST_CASE("a load passes, is stopped, or is unknown where it leaves the window or the margin") {
+  const Section one(section_of({{0, 4, 2, 3}})), corner(section_of({{0, 7, 9, 3}}));
+  const Section middle(section_of({{0, 0, 4, 3}}));  // y = 0 to 0.5, z = 2 to 2.5
+  SectionData moving_data = section_of({{0, 4, 2, 3}});
+  moving_data.motion = {0.3, 0.2};  // is kept as a distance, too
+  moving_data.parameters.between_poses = true;
+  const Section moving(std::move(moving_data));
+  const auto symmetric = [](double half) { return box(-half, half, 0.1, 3); };
+  const std::vector<OutlinePoint> slant{{1, 1.5}, {1.5, 1.5}, {1.5, 2}};
+  const std::vector<OutlinePoint> around{{-1, 1}, {2, 1}, {2, 4}, {1, 4}, {1, 1.6}, {-1, 1.6}};
+  struct Row {
+    const char* what;
+    const Section& section;
+    std::vector<OutlinePoint> outline;
+    double margin;
+    const char* verdict;
+    const char* reason = "";
   };
-  CHECK(check(box(-4, 1, 0, 3), 0).verdict == SectionVerdict::kPasses);
-  check_says(check(box(-4, 1, 0, 3), 0.01).reason, "leaves the window");
-  check_says(check(box(-1, 1, -0.1, 3), 0).reason, "leaves the window");
-  CHECK(check(box(-1, 1, 1, 3), 1).verdict == SectionVerdict::kPasses);
-  check_says(check(box(-1, 1, 1.5, 3), 1.01).reason, "margins up to 1 only");
-  // What is known to stop a load stops it, even where not all of the load is known.
-  CHECK(check(box(-4, 5, 0, 6), 2).verdict == SectionVerdict::kStopped);
-  check_refused([&] { return check(box(-1, 1, 1, 3), -1); }, "expected 0 or more");
-  check_refused([&] { return check({{0, 0}, {1, 1}}, 0); }, "corners");
+  for (const Row& row :
+       {Row{"beside", one, symmetric(1.9), 0, "passes"},
+        Row{"just beside", one, symmetric(1.9), 0.1 - 1e-8, "passes"},
+        Row{"at the margin", one, symmetric(1.9), 0.1, "stopped"},
+        Row{"touching", one, symmetric(2), 0, "stopped"},
+        Row{"far beyond", one, symmetric(3.5), 0, "stopped"},
+        Row{"up to the window", corner, box(-4, 1, 0, 3), 0, "passes"},
+        Row{"a margin beyond it", corner, box(-4, 1, 0, 3), 0.01, "unknown", "leaves the window"},
+        Row{"below it", corner, box(-1, 1, -0.1, 3), 0, "unknown", "leaves the window"},
+        Row{"the greatest margin", corner, box(-1, 1, 1, 3), 1, "passes"},
+        Row{"more", corner, box(-1, 1, 1.5, 3), 1.01, "unknown", "margins up to 1 only"},
+        // What is known to stop a load stops it, even where not all of the load is known.
+        Row{"stopped outside", corner, box(-4, 5, 0, 6), 2, "stopped"},
+        Row{"moving", moving, box(-1, 1.85, 0.5, 3), 0, "passes"},
+        Row{"moving too near", moving, box(-1, 1.95, 0.5, 3), 0, "stopped"},
+        Row{"moving out of it", moving, box(-1, 1, 0.05, 3), 0, "unknown"},
+        Row{"around a cell", middle, box(-3, 3, 1, 4), 0, "stopped"},
+        Row{"inside a cell", middle, box(0.1, 0.2, 2.1, 2.2), 0, "stopped"},
+        Row{"across a cell", middle, box(-1, 1, 2.2, 2.3), 0, "stopped"},
+        // Nearest to the corner (0.5, 2): sqrt(0.5) = 0.7071.
+        Row{"a slant", middle, slant, 0.7, "passes"},
+        Row{"a slant too near", middle, slant, 0.71, "stopped"},
+        Row{"an angle", middle, around, 0.39, "passes"},
+        Row{"an angle too near", middle, around, 0.41, "stopped"}}) {
+    const RowName name(row.what);
+    const SectionCheck check = row.section.check(row.outline, row.margin);
+    check_equal(name_of(check.verdict), row.verdict);
+    if (*row.reason != 0) check_says(check.reason, row.reason);
+  }
+  const auto refused = [&](const std::vector<OutlinePoint>& outline, double margin,
+                           const char* words) {
+    check_refused([&] { corner.check(outline, margin); }, words);
+  };
+  refused(box(-1, 1, 1, 3), -1, "expected 0 or more");
+  refused({{0, 0}, {1, 1}}, 0, "corners");
+  refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 0, "cross or touch");
   // Without a margin, that of the section counts, which is 1.
-  CHECK(section.check(box(-1, 1, 1, 3)).verdict == SectionVerdict::kPasses);
-  check_says(section.check(box(-1, 1, 0.9, 3)).reason, "leaves the window");
-  CHECK((section.free_cells() == section.free_cells(1)));
-  check_refused([&] { return check({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, 0); }, "cross or touch");
+  CHECK(corner.check(box(-1, 1, 1, 3)).verdict == SectionVerdict::kPasses);
+  check_says(corner.check(box(-1, 1, 0.9, 3)).reason, "leaves the window");
+  CHECK((corner.free_cells() == corner.free_cells(1)));
 }
 
 TEST_CASE("a section in doubt lets no load pass") {
@@ -116,38 +144,14 @@ TEST_CASE("a section in doubt lets no load pass") {
 
 TEST_CASE("an outline in another unit, which is smaller than any load, does not pass") {
   SectionData data = section_of({});
-  CHECK(Section(data).check(box(-0.0013, 0.0013, 1, 1.004)).verdict == SectionVerdict::kUnknown);
-  CHECK(Section(data).check(box(-0.1, 0.1, 1, 1.02)).verdict == SectionVerdict::kPasses);
-  const auto small = box(-0.01, 0.01, 1, 1.02);
-  CHECK(Section(data).check(small).verdict == SectionVerdict::kPasses);
+  const Section metres(data);
   data.length_unit = "us-survey-foot";
-  check_says(Section(data).check(small).reason, "its unit is probably another one");
-}
-
-TEST_CASE("between poses the motion across is kept as a distance, too") {
-  SectionData data = section_of({{0, 4, 2, 3}});
-  data.motion = {0.3, 0.2};
-  data.parameters.between_poses = true;
-  const Section section(std::move(data));
-  CHECK(section.check(box(-1, 1.85, 0.5, 3), 0).verdict == SectionVerdict::kPasses);
-  CHECK(section.check(box(-1, 1.95, 0.5, 3), 0).verdict == SectionVerdict::kStopped);
-  CHECK(section.check(box(-1, 1, 0.05, 3), 0).verdict == SectionVerdict::kUnknown);
-}
-
-TEST_CASE("an outline's distance to a cell counts its inside, edges and corners") {
-  const Section section(section_of({{0, 0, 4, 3}}));  // y = 0 to 0.5, z = 2 to 2.5
-  const auto stopped = [&](const std::vector<OutlinePoint>& outline, double margin) {
-    return section.check(outline, margin).verdict == SectionVerdict::kStopped;
-  };
-  CHECK(stopped(box(-3, 3, 1, 4), 0));         // the cell is inside
-  CHECK(stopped(box(0.1, 0.2, 2.1, 2.2), 0));  // the load is inside the cell
-  CHECK(stopped(box(-1, 1, 2.2, 2.3), 0));     // they cross
-  const std::vector<OutlinePoint> slant{{1, 1.5}, {1.5, 1.5}, {1.5, 2}};
-  CHECK_FALSE(stopped(slant, 0.7));  // nearest to the corner (0.5, 2): sqrt(0.5) = 0.7071
-  CHECK(stopped(slant, 0.71));
-  const std::vector<OutlinePoint> around{{-1, 1}, {2, 1}, {2, 4}, {1, 4}, {1, 1.6}, {-1, 1.6}};
-  CHECK_FALSE(stopped(around, 0.39));
-  CHECK(stopped(around, 0.41));
+  const Section feet(data);
+  const auto small = box(-0.01, 0.01, 1, 1.02);
+  CHECK(metres.check(box(-0.0013, 0.0013, 1, 1.004)).verdict == SectionVerdict::kUnknown);
+  CHECK(metres.check(box(-0.1, 0.1, 1, 1.02)).verdict == SectionVerdict::kPasses);
+  CHECK(metres.check(small).verdict == SectionVerdict::kPasses);
+  check_says(feet.check(small).reason, "its unit is probably another one");
 }
 
 TEST_CASE("free cells are those of the definition") {
@@ -181,60 +185,11 @@ TEST_CASE("free cells are those of the definition") {
   }
 }
 
-TEST_CASE("bands have the widths to the nearest blocked cells") {
-  const Section section(
-      section_of({{0, 4, 2, 3}, {1, -6, 2, 7}, {1, 3, 3, 8}, {2, -6, 2, 11}, {3, 3, 3, 15}}));
-  const auto bands = section_bands(section, {.band = 1, .base = 0});
-  REQUIRE(bands.size() == 5);
-  CHECK_FALSE(bands[0].left);
-  CHECK_FALSE(bands[0].right);
-  CHECK_FALSE(symmetric_width(section.data(), bands[0]));
-  REQUIRE(bands[1].left);
-  check_equal(bands[1].z_from, 1);
-  check_equal(bands[1].z_to, 2);
-  check_equal(bands[1].left->width, 1.5);
-  check_equal(bands[1].left->first_pose, 8);
-  REQUIRE(bands[1].right);
-  check_equal(bands[1].right->width, 2.5);
-  check_equal(bands[1].right->first_pose, 7);
-  CHECK(*symmetric_width(section.data(), bands[1]) == Approx(3 - 2e-9).epsilon(0).margin(1e-12));
-
-  const auto boxes = section_boxes(section, {.band = 1, .base = 0});
-  CHECK_FALSE(boxes[0].left);
-  for (std::size_t i = 1; i < 5; ++i) {
-    check_equal(boxes[i].left->width, 1.5);
-    check_equal(boxes[i].right->width, 2.5);
-    check_equal(boxes[i].z_from, 0);
-  }
-
-  const auto stations = section_stations(section, {.band = 0.5, .base = 1});
-  REQUIRE(stations.size() == 4);
-  check_equal(stations[0].bands.size(), 8);
-  check_equal(stations[0].bands[0].left->width, 2);
-  CHECK_FALSE(stations[0].bands[1].left);
-  check_equal(stations[3].bands[1].left->first_pose, 15);
-  CHECK_FALSE(stations[3].bands[0].right);
-}
-
-TEST_CASE("a band of cells does not reach into the next row by rounding") {
-  SectionData data = section_of({{0, 3, 15, 1}});
-  data.parameters.cell = 0.02;
-  data.parameters.window = SectionWindow{-1, 1, 0, 1};
-  const Section section(std::move(data));
-  const auto bands = section_bands(section, {.band = 0.1});
-  REQUIRE(bands.size() == 10);
-  for (std::size_t i = 0; i < 10; ++i) CHECK(bands[i].left.has_value() == (i == 3));
-}
-
-TEST_CASE("widths need the middle and a band in the window") {
+TEST_CASE("widths need the middle and a band of some height") {
   SectionData data = section_of({});
   data.parameters.window = SectionWindow{0.5, 4, 0, 5};
   check_refused([&] { return section_bands(Section(data), {}); }, "lacks the middle");
-  const Section section(section_of({}));
-  check_refused([&] { return section_bands(section, {.band = 0.1, .base = 5}); }, "no band");
-  check_refused([&] { return section_bands(section, {.band = -1}); }, "above 0");
-  check_refused([&] { return section_bands(section, {.band = 2, .base = -1}); },
-                "below the window");
+  check_refused([&] { return section_bands(Section(section_of({})), {.band = -1}); }, "above 0");
 }
 
 TEST_CASE("the largest load stands above what blocks the middle, unless a base is given") {
@@ -422,19 +377,24 @@ TEST_CASE("a table of which no row is judged is unknown") {
   check_says(check.reason, "no pose on the path of any row");
 }
 
-TEST_CASE("a warned stretch between poses concerns the bins of the way around it") {
-  SectionData data = section_of({});
-  data.parameters.between_poses = true;
-  data.motion = {1, 0};
-  data.warnings.push_back(
-      {Message::Severity::kWarning, "nothing-below", "text", {}, {{PoseRange{10, 10}}}});
-  const OutlineTableCheck check =
-      Section(std::move(data))
-          .check(table_of({{0, 5}, {5, 10}, {10, 15}, {15, 19}}, box(-1, 1, 0.5, 3)));
-  for (const std::size_t row : {0, 3}) {
-    CHECK(check.rows[row].check.verdict == SectionVerdict::kPasses);
+TEST_CASE("a warned stretch leaves only rows unknown that touch it, or the way around it") {
+  for (const bool ways : {false, true}) {
+    SectionData data = section_of({});
+    data.parameters.between_poses = ways;
+    data.motion = {ways ? 1.0 : 0.0, 0};
+    const PoseRange warned = ways ? PoseRange{10, 10} : PoseRange{11, 12};
+    data.warnings.push_back({Message::Severity::kWarning, "nothing-below", "text", {}, {{warned}}});
+    const OutlineTableCheck check =
+        Section(std::move(data))
+            .check(table_of({{0, 5}, {5, 10}, {10, 15}, {15, 19}}, box(-1, 1, 0.5, 3)));
+    for (std::size_t row = 0; row < 4; ++row) {
+      const bool is_warned = row == 2 || (row == 1 && ways);
+      CHECK((check.rows[row].check.verdict == SectionVerdict::kPasses) == !is_warned);
+      if (is_warned) check_says(check.rows[row].check.reason, "nothing-below");
+    }
+    CHECK(check.verdict == SectionVerdict::kUnknown);
+    if (!ways) check_says(check.reason, "line 4 of table.csv");
   }
-  for (const std::size_t row : {1, 2}) check_says(check.rows[row].check.reason, "nothing-below");
 }
 
 TEST_CASE("rows by station lie where the path has these stations, which have to ascend") {
@@ -451,18 +411,4 @@ TEST_CASE("rows by station lie where the path has these stations, which have to 
   check_refused([&] { section.check(table, {}, std::vector<double>(3, 1.0)); }, "3 stations");
   station[7] = station[6];
   check_refused([&] { section.check(table, {}, station); }, "do not ascend from pose 6");
-}
-
-TEST_CASE("a warned stretch leaves only rows unknown that touch it") {
-  SectionData data = section_of({});
-  data.warnings.push_back(
-      {Message::Severity::kWarning, "nothing-below", "text", {}, {{PoseRange{11, 12}}}});
-  const Section section(std::move(data));
-  const OutlineTableCheck check =
-      section.check(table_of({{0, 10}, {10, 15}, {15, 19}}, box(-1, 1, 0.5, 3)));
-  CHECK(check.rows[0].check.verdict == SectionVerdict::kPasses);
-  check_says(check.rows[1].check.reason, "nothing-below");
-  CHECK(check.rows[2].check.verdict == SectionVerdict::kPasses);
-  CHECK(check.verdict == SectionVerdict::kUnknown);
-  check_says(check.reason, "line 3 of table.csv");
 }

@@ -136,7 +136,7 @@ GroundSide found_in(const std::vector<Vec3>& points, const std::vector<GroundPla
   // Between the first and the last found place, heights change evenly from one to the next.
   for (std::size_t k = 0; k + 1 < side.places.size(); ++k) {
     const std::size_t from = side.places[k], to = side.places[k + 1];
-    const std::vector<double> all = side.bridged(places, from, to + 1);
+    const std::vector<double> all = side.bridged(places, from, to);
     REQUIRE(all.size() == to + 1 - from);
     for (std::size_t i = from; i <= to; ++i) {
       const double share = static_cast<double>(i - from) / static_cast<double>(to - from);
