@@ -14,6 +14,7 @@
 #include "io/result/conflicts/write_conflicts.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "support/compare.hpp"
+#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -28,17 +29,14 @@ constexpr const char* kOwn =
 
 /// Two conflicts of three points in a written file.
 struct Written {
-  explicit Written(const std::string& wkt) {
-    found.poses = {translation({500'000, 4'000'000, 100})};
-    found.quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}};
-    found.quanta = {{0, 0, 0}, {100, 0, 0}, {200, 50, 0}, {9000, 0, 0}, {9100, 0, 0}, {9200, 0, 0}};
-    header = found.header();
+  explicit Written(const std::string& wkt, std::span<const double> station = {})
+      : options{.min_points = 3, .station = station} {
+    ResultHeader header = found.header();
     header.crs_wkt = wkt;
     write_result(folder / "out.h5", header, found.rows());
-    options.min_points = 3;
   }
 
-  std::string write(ConflictFormat format) {
+  std::string write(ConflictFormat format) const {
     const Result result(folder / "out.h5");
     std::vector<std::uint32_t> conflict_of;
     const Conflicts conflicts = find_conflicts(result, found.poses, options, &conflict_of);
@@ -50,25 +48,30 @@ struct Written {
     return bytes_of(folder / "out");
   }
 
-  Found found;
-  ResultHeader header;
+  json parsed(ConflictFormat format) const { return json::parse(write(format)); }
+
+  /// The first value of a query of the GeoPackage that was written, as text.
+  std::string value(const std::string& sql) const {
+    sqlite3* database = nullptr;
+    sqlite3_stmt* statement = nullptr;
+    REQUIRE(sqlite3_open_v2((folder / "out").c_str(), &database, SQLITE_OPEN_READONLY, nullptr) ==
+            SQLITE_OK);
+    REQUIRE(sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK);
+    REQUIRE(sqlite3_step(statement) == SQLITE_ROW);
+    const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement, 0));
+    const std::string out(text == nullptr ? "null" : text);
+    sqlite3_finalize(statement);
+    sqlite3_close(database);
+    return out;
+  }
+
+  Found found{
+      .quanta = {{0, 0, 0}, {100, 0, 0}, {200, 50, 0}, {9000, 0, 0}, {9100, 0, 0}, {9200, 0, 0}},
+      .quantisation = {{0.001, 0.001, 0.001}, {500'000, 4'000'000, 100}},
+      .poses = {translation({500'000, 4'000'000, 100})}};
   ConflictOptions options;
   ScratchFolder folder;
 };
-
-/// The first value of a query, as text.
-std::string value_of(const std::filesystem::path& path, const std::string& sql) {
-  sqlite3* database = nullptr;
-  REQUIRE(sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK);
-  sqlite3_stmt* statement = nullptr;
-  REQUIRE(sqlite3_prepare_v2(database, sql.c_str(), -1, &statement, nullptr) == SQLITE_OK);
-  REQUIRE(sqlite3_step(statement) == SQLITE_ROW);
-  const auto* text = reinterpret_cast<const char*>(sqlite3_column_text(statement, 0));
-  const std::string out(text == nullptr ? "null" : text);
-  sqlite3_finalize(statement);
-  sqlite3_close(database);
-  return out;
-}
 
 }  // namespace
 
@@ -79,7 +82,7 @@ TEST_CASE("text in pages and BCF is escaped for elements and attributes") {
 
 TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
   const auto name = [](const std::string& wkt) {
-    const json all = json::parse(Written(wkt).write(ConflictFormat::kGeoJson));
+    const json all = Written(wkt).parsed(ConflictFormat::kGeoJson);
     CHECK(all["features"][0]["geometry"]["coordinates"][1].get<double>() > 3'999'999);
     return all["crs"]["properties"]["name"].get<std::string>();
   };
@@ -90,102 +93,82 @@ TEST_CASE("GeoJSON names the coordinate reference system of the scans") {
 }
 
 TEST_CASE("a GeoPackage has the scans' system, its layers and its marks") {
-  Written written(kUtm);
+  const Written written(kUtm);
   const std::string bytes = written.write(ConflictFormat::kGeoPackage);
   check_equal(bytes.compare(0, 15, "SQLite format 3"), 0);
   check_equal(bytes.compare(68, 4, "GPKG"), 0);
-  const auto path = written.folder / "out";
-  const auto value = [&](const std::string& sql) { return value_of(path, sql); };
-  check_equal(value("PRAGMA integrity_check"), "ok");
-  check_equal(value("SELECT count(*) FROM pragma_foreign_key_check"), "0");
-  check_equal(value("SELECT organization || organization_coordsys_id FROM gpkg_spatial_ref_sys "
-                    "WHERE srs_id = 25832"),
-              "EPSG25832");
-  check_equal(value("SELECT count(*) FROM gpkg_contents WHERE srs_id = 25832"), "3");
-  check_equal(value("SELECT last_change FROM gpkg_contents"), "2000-01-01T00:00:00.000Z");
-  check_equal(value("SELECT min_x FROM gpkg_contents WHERE table_name = 'footprints'"), "500000.0");
-  check_equal(value("SELECT points FROM conflicts WHERE id = 2"), "3");
-  check_equal(value("SELECT least_distance FROM conflicts WHERE id = 2"), "null");
-  check_equal(value("SELECT typeof(source) FROM stretches"), "integer");
-  // A point has 8 bytes of header, 5 of well-known binary and three numbers.
-  CHECK(value("SELECT length(geom) FROM conflicts") == std::to_string(8 + 5 + 24));
-  CHECK(value("SELECT length(geom) FROM footprints") == std::to_string(8 + 32 + 13 + 5 * 24));
-  // The line has the only pose twice.
-  CHECK(value("SELECT length(geom) FROM stretches") == std::to_string(8 + 32 + 9 + 2 * 24));
+  for (const auto& row : text_rows(R"(
+    PRAGMA integrity_check                                                     | ok
+    SELECT count(*) FROM pragma_foreign_key_check                              | 0
+    SELECT organization FROM gpkg_spatial_ref_sys WHERE srs_id = 25832         | EPSG
+    SELECT organization_coordsys_id FROM gpkg_spatial_ref_sys WHERE srs_id = 25832 | 25832
+    SELECT count(*) FROM gpkg_contents WHERE srs_id = 25832                    | 3
+    SELECT last_change FROM gpkg_contents                                      | 2000-01-01T00:00:00.000Z
+    SELECT min_x FROM gpkg_contents WHERE table_name = 'footprints'            | 500000.0
+    SELECT points FROM conflicts WHERE id = 2                                  | 3
+    SELECT least_distance FROM conflicts WHERE id = 2                          | null
+    SELECT typeof(source) FROM stretches                                       | integer
+    SELECT length(geom) - (8 + 5 + 24) FROM conflicts                          | 0
+    SELECT length(geom) - (8 + 32 + 13 + 5 * 24) FROM footprints               | 0
+    SELECT length(geom) - (8 + 32 + 9 + 2 * 24) FROM stretches                 | 0
+  )")) {
+    const RowName name(row[0]);
+    check_equal(written.value(row[0]), row[1]);
+  }
 }
 
 TEST_CASE("a GeoPackage keeps systems that have no number, and goes without any") {
-  Written own(kOwn);
-  own.write(ConflictFormat::kGeoPackage);
-  check_equal(value_of(own.folder / "out", "SELECT srs_id FROM gpkg_contents"), "100000");
-  CHECK_THAT(value_of(own.folder / "out",
-                      "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000"),
-             StartsWith("PROJCS[\"Site"));
-  Written odd("it's no WKT");
-  odd.write(ConflictFormat::kGeoPackage);
-  CHECK(value_of(odd.folder / "out",
-                 "SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000") ==
-        "it's no WKT");
-  Written none("");
-  none.write(ConflictFormat::kGeoPackage);
-  check_equal(value_of(none.folder / "out", "SELECT srs_id FROM gpkg_contents"), "-1");
+  const std::pair<const char*, const char*> rows[] = {
+      {kOwn, "PROJCS[\"Site"}, {"it's no WKT", "it's no WKT"}, {"", ""}};
+  for (const auto& [wkt, definition] : rows) {
+    const RowName name(wkt);
+    const Written written(wkt);
+    written.write(ConflictFormat::kGeoPackage);
+    check_equal(written.value("SELECT srs_id FROM gpkg_contents"), *wkt == 0 ? "-1" : "100000");
+    if (*wkt == 0) continue;
+    CHECK_THAT(written.value("SELECT definition FROM gpkg_spatial_ref_sys WHERE srs_id = 100000"),
+               StartsWith(definition));
+  }
 }
 
 TEST_CASE("files of conflicts have stations where the trajectory has them, and only there") {
-  const std::vector<double> station{1234.5};
-  const auto with = [&](ConflictFormat format) {
-    Written written("");
-    written.options.station = station;
-    return written.write(format);
-  };
-  const auto without = [](ConflictFormat format) { return Written("").write(format); };
-  const std::string csv = with(ConflictFormat::kCsv);
+  const std::vector<double> station{1234.5}, two{1, 2};
+  const Written with("", station), without("");
+  const std::string csv = with.write(ConflictFormat::kCsv);
   check_says(csv, ",chainage_to,station_from,station_to,least_distance,");
   check_says(csv, ",0,0,0,0,1234.5,1234.5,,");
-  const json listed = json::parse(with(ConflictFormat::kJson))["conflicts"];
+  const json listed = with.parsed(ConflictFormat::kJson)["conflicts"];
   CHECK(listed[1]["station_from"] == 1234.5);
   CHECK(listed[1]["station_to"] == 1234.5);
-  CHECK(json::parse(with(ConflictFormat::kGeoJson))["features"][0]["properties"]["station_to"] ==
-        1234.5);
+  const json map = with.parsed(ConflictFormat::kGeoJson);
+  CHECK(map["features"][0]["properties"]["station_to"] == 1234.5);
   for (const auto format : {ConflictFormat::kCsv, ConflictFormat::kJson, ConflictFormat::kGeoJson,
                             ConflictFormat::kBcf}) {
-    check_lacks(without(format), "station");
+    check_lacks(without.write(format), "station");
   }
-  Written written("");
-  written.options.station = station;
-  written.write(ConflictFormat::kGeoPackage);
-  CHECK(value_of(written.folder / "out",
-                 "SELECT typeof(station_from) || station_to FROM stretches WHERE id = 2") ==
-        "real1234.5");
+  with.write(ConflictFormat::kGeoPackage);
+  check_equal(with.value("SELECT typeof(station_from) || station_to FROM stretches WHERE id = 2"),
+              "real1234.5");
   // Small groups stand in for conflicts, and have stations too.
-  Written small("");
-  small.options.station = station;
-  small.options.min_points = 4;
-  const Result result(small.folder / "out.h5");
-  const Conflicts found = find_conflicts(result, small.found.poses, small.options);
+  ConflictOptions options{.min_points = 4, .station = station};
+  const Result result(with.folder / "out.h5");
+  const Conflicts found = find_conflicts(result, with.found.poses, options);
   REQUIRE(found.listed.empty());
   check_equal(found.small.at(1).station_to, 1234.5);
   const Answer answer = counted_answer(result.reader());
-  const ConflictFile file{found,  small.options,     result.reader().header(),
-                          answer, small.found.poses, {}};
+  const ConflictFile file{found, options, result.reader().header(), answer, with.found.poses, {}};
   check_says("{" + member_lines(summary_of(file)) + "}", "\"station_from\": 1234.5");
-  const std::vector<double> two{1, 2};
-  small.options.station = two;
-  check_refused([&] { return find_conflicts(result, small.found.poses, small.options); },
+  options.station = two;
+  check_refused([&] { return find_conflicts(result, with.found.poses, options); },
                 "2 stations for 1 pose");
 }
 
 TEST_CASE("a topic of BCF names the stations of its conflict") {
-  Found found;
-  found.quanta = {{0, 0, 0}};
+  const Found found{.quanta = {{0, 0, 0}}};
   const ResultHeader header = found.header();
   Conflicts conflicts;
-  Conflict conflict;
-  conflict.id = 1;
-  conflict.chainage_to = 12.5;
-  conflict.station_from = 1250;
-  conflict.station_to = 1237.5;
-  conflicts.listed.push_back(conflict);
+  conflicts.listed.push_back(
+      {.id = 1, .chainage_to = 12.5, .station_from = 1250, .station_to = 1237.5});
   const ConflictOptions options;
   const Answer answer = answer_of(header);
   const ConflictFile file{conflicts, options, header, answer, found.poses, {}};
@@ -216,7 +199,7 @@ TEST_CASE("every file of conflicts is JSON, CSV or binary as its name says") {
 
 TEST_CASE("a full disk is an error of the machine in every format") {
   if (!std::filesystem::exists("/dev/full")) return;
-  Written written("");
+  const Written written("");
   std::filesystem::create_symlink("/dev/full", written.folder / "out");
   for (const auto format : {ConflictFormat::kCsv, ConflictFormat::kJson, ConflictFormat::kGeoJson,
                             ConflictFormat::kGeoPackage, ConflictFormat::kBcf}) {

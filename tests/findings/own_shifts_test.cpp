@@ -184,7 +184,7 @@ void check_least(const ShiftScene& scene, const std::vector<SideShifts>& found, 
       Shifted shifted(scene, set, direction);
       if (shift) CHECK_FALSE(shifted.collides(*shift + kClose));
       const double end = shift.value_or(scene.most) - kClose;
-      for (int i = 0; i < 200 && end > 0; ++i) {
+      for (int i = 0; i < 100 && end > 0; ++i) {
         // At both ends, near the far one, and anywhere
         const double part = i < 2        ? i
                             : i % 4 == 0 ? 1 - std::pow(10, -uniform(random, 0, 7))
@@ -337,15 +337,6 @@ TEST_CASE("own shifts of long and crowded scenes are those of the brute force") 
     scene.poses = {scene.path};
     scene.ranges = {{0, static_cast<std::uint32_t>(count - 1)}};
   };
-  SECTION("a load scrapes a wall along its whole way") {
-    Bodies bodies;
-    bodies.add(box_surface({{-2, -1, 0}, {2, 1, 2}}));
-    scene.models = {bodies.query({}, 0.1).model};
-    drive(40, [](std::size_t i) { return Vec3{0.5 * static_cast<double>(i), 0, 0}; });
-    for (int i = 0; i < 200; ++i) {
-      scene.add({0.1 * i, 1.02 + uniform(random, -0.03, 0.03), uniform(random, 0, 2)});
-    }
-  }
   SECTION("a flat wall beside a model whose points make a lattice") {
     for (int i = 0; i <= 8; ++i) {
       for (int k = 0; k <= 4; ++k) {
@@ -376,13 +367,6 @@ TEST_CASE("own shifts of long and crowded scenes are those of the brute force") 
     });
     for (int i = 0; i < 60; ++i) {
       scene.add({uniform(random, 0, 3), uniform(random, -0.5, -0.3), uniform(random, 0, 0.5)});
-    }
-  }
-  SECTION("a model of one point") {
-    scene.models[0].vertices = {{0.3, 0.2, 0.1}};
-    drive(300, [](std::size_t i) { return Vec3{0.02 * static_cast<double>(i), 0, 0}; });
-    for (int i = 0; i < 200; ++i) {
-      scene.add({uniform(random, 0, 6), uniform(random, 0.1, 0.3), uniform(random, 0, 0.2)});
     }
   }
   check_against_brute_force(scene, random);

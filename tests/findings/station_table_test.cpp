@@ -221,56 +221,48 @@ TEST_CASE("lengths of stretches that make no sense are refused") {
   check_equal(scene.table(1e-4).rows.size(), 100'000);
 }
 
-TEST_CASE("without clearances the distances are empty and a warning says so") {
-  const StationScene scene({{4, 0.55, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
-  const StationTable table = scene.table(2);
-  check_equal(codes_of(table.warnings), "no-clearances");
-  for (const StationRow& row : table.rows) CHECK_FALSE((row.least || row.left || row.above));
-  CHECK(table.rows[1].verdict == Verdict::kConflict);
-  CHECK(table.rows[4].verdict == Verdict::kClear);
-}
-
-TEST_CASE("a path of one pose has one row without overthrow, and one without poses has none") {
-  const StationScene scene({{1, 0.55, 0}},
-                           Query(kCar, straight_path(0), {.radius = 0.1, .clearance = 1}));
-  const StationTable table = scene.table(5);
-  REQUIRE(table.rows.size() == 1);
-  check_equal(table.rows[0].chainage_to, 0);
-  CHECK(table.rows[0].verdict == Verdict::kConflict);
-  CHECK(table.rows[0].left);
-  CHECK_FALSE(table.rows[0].overthrow.at(0).end);
-  const StationScene none({{1, 0.55, 0}}, Query(kCar, {}, {.radius = 0.1}));
-  CHECK(none.table(5).rows.empty());
-}
-
-TEST_CASE("rows without a pose are not clear unless ways are searched") {
-  const std::vector<Pose> path = straight_path(10, 2.5);
-  const StationScene poses({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1}));
-  const StationScene ways({{50, 50, 0}}, Query(kCar, path, {.radius = 0.1, .between_poses = true}));
-  std::size_t searched = 0;
-  for (const StationRow& row : poses.table(1).rows) searched += row.is_searched ? 1 : 0;
-  check_equal(searched, 5);
-  for (const StationRow& row : ways.table(1).rows) CHECK(row.is_searched);
-}
-
-TEST_CASE("a question in doubt leaves no row clear") {
-  const StationScene far({{5000, 50, 0}}, Query(kCar, straight_path(10), {.radius = 0.1}));
-  for (const StationRow& row : far.table(2).rows) {
-    CHECK(row.verdict == Verdict::kUndecided);
-    CHECK(row.reasons == std::vector{Reason::kQuestionInDoubt});
-  }
-}
-
-TEST_CASE("a path that comes back later does not touch all the way") {
-  std::vector<Pose> path;  // 40 m out along x, aside, and back past where it began
-  for (int i = 0; i <= 80; ++i) path.push_back(translation({0.5 * i, 0, 0}));
-  for (int i = 1; i <= 80; ++i) path.push_back(translation({40 - 0.5 * i, 0.3, 0}));
-  const StationScene scene({{1.0, 0.55, 0}}, Query(kCar, path, {.radius = 0.3}));
-  REQUIRE(scene.result().first_pose()[0] < 10);
-  REQUIRE(scene.result().last_pose()[0] > 150);
-  for (const StationRow& row : scene.table(5).rows) {
-    const bool near = row.chainage_from < 2.5 || row.chainage_to > 77;
-    CHECK((row.verdict == Verdict::kConflict) == near);
+TEST_CASE("a row is in conflict where its poses touch, and clear where all of it was searched") {
+  std::vector<Pose> and_back = straight_path(40);  // aside, and past where it began
+  for (int i = 1; i <= 80; ++i) and_back.push_back(translation({40 - 0.5 * i, 0.3, 0}));
+  const std::vector<Pose> path = straight_path(10), coarse = straight_path(10, 2.5);
+  struct Row {
+    const char* what;
+    Vec3 point;
+    std::vector<Pose> path;
+    QueryParameters asked;
+    double every;
+    const char* verdicts;  ///< "!" conflict, "." clear, "?" undecided, "-" not searched
+  };
+  for (const Row& row :
+       {Row{"a post", {4, 0.55, 0}, path, {.radius = 0.1}, 2, ".!!.."},
+        Row{"one pose", {1, 0.55, 0}, straight_path(0), {.radius = 0.1, .clearance = 1}, 5, "!"},
+        Row{"no pose", {1, 0.55, 0}, {}, {.radius = 0.1}, 5, ""},
+        Row{"a few poses", {50, 50, 0}, coarse, {.radius = 0.1}, 1, "?-?--?-?-?"},
+        Row{"ways between them",
+            {50, 50, 0},
+            coarse,
+            {.radius = 0.1, .between_poses = true},
+            1,
+            "??????????"},
+        Row{"a question in doubt", {5000, 50, 0}, path, {.radius = 0.1}, 2, "?????"},
+        Row{"back again", {1, 0.55, 0}, and_back, {.radius = 0.3}, 5, "!.????????????.!!"}}) {
+    const RowName name(row.what);
+    const StationTable table =
+        StationScene({row.point}, Query(kCar, row.path, row.asked)).table(row.every);
+    std::string verdicts;
+    for (const StationRow& one : table.rows) {
+      verdicts += one.verdict == Verdict::kConflict ? "!"
+                  : !one.is_searched                ? "-"
+                  : one.verdict == Verdict::kClear  ? "."
+                                                    : "?";
+      CHECK((one.least || one.left || one.above) == (row.asked.clearance > 0));
+      if (row.point.x == 5000) CHECK(one.reasons == std::vector{Reason::kQuestionInDoubt});
+      if (table.rows.size() == 1) CHECK_FALSE(one.overthrow.at(0).end);
+    }
+    check_equal(verdicts, row.verdicts);
+    if (row.asked.clearance == 0 && !row.path.empty()) {
+      check_equal(codes_of(table.warnings), "no-clearances");
+    }
   }
 }
 

@@ -17,13 +17,11 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-Vec3 nearest_place(const Box& box, const Vec3& x) {
-  Vec3 out{};
-  for (int k = 0; k < 3; ++k) out[k] = std::clamp(x[k], box.lo[k], box.hi[k]);
-  return out;
+double distance_to(const Box& box, const Vec3& x) {
+  Vec3 off{};
+  for (int k = 0; k < 3; ++k) off[k] = x[k] - std::clamp(x[k], box.lo[k], box.hi[k]);
+  return length(off);
 }
-
-double distance_to(const Box& box, const Vec3& x) { return length(x - nearest_place(box, x)); }
 
 /// The distance of a box to a segment, which has one least value along it.
 double distance_to(const Box& box, const Vec3& a, const Vec3& b) {
@@ -41,18 +39,6 @@ double turn_between(const Pose& from, const Pose& to) {
   double trace = 0;
   for (int k = 0; k < 9; ++k) trace += from.rotation[k] * to.rotation[k];
   return std::acos(std::clamp((trace - 1) / 2, -1.0, 1.0));
-}
-
-/// The pose on the way of model points on straight segments; its matrix also shrinks.
-Pose on_way(const Pose& from, const Pose& to, double part) {
-  Pose out{};
-  for (int k = 0; k < 9; ++k) {
-    out.rotation[k] = from.rotation[k] + part * (to.rotation[k] - from.rotation[k]);
-  }
-  for (int k = 0; k < 3; ++k) {
-    out.translation[k] = from.translation[k] + part * (to.translation[k] - from.translation[k]);
-  }
-  return out;
 }
 
 /// Where the points of a conflict lie across the vehicle, pose by pose and point by point.
@@ -124,40 +110,6 @@ struct Oracle {
   }
 };
 
-/// Whether a box keeps the radius from the conflict's points at all of its poses; between poses, at
-/// 30 places of each way.
-bool is_free(const Found& found, const Box& box, const Conflict& c,
-             const std::vector<Vec3>& points) {
-  const double radius = found.header().radius;
-  const auto counts = [&](const Pose& pose, const Vec3& e) {
-    return !found.floor || pulled_back(pose, e).z >= *found.floor;
-  };
-  const auto collides = [&](const Pose& pose, const Vec3& e) {
-    const Vec3 x = pulled_back(pose, e), off = x - nearest_place(box, x);
-    Vec3 apart{};
-    for (int k = 0; k < 3; ++k) {
-      for (int j = 0; j < 3; ++j) apart[k] += pose.rotation[3 * k + j] * off[j];
-    }
-    return length(apart) < radius - 1e-9;
-  };
-  const std::size_t last =
-      std::min<std::size_t>(c.last_pose + (found.between_poses ? 1u : 0u), found.poses.size() - 1);
-  for (const Vec3& e : points) {
-    for (std::size_t i = c.first_pose; i <= last; ++i) {
-      const Pose& pose = found.poses[i];
-      if (!found.between_poses) {
-        if (counts(pose, e) && collides(pose, e)) return false;
-        continue;
-      }
-      if (i == last || !(counts(pose, e) || counts(found.poses[i + 1], e))) continue;
-      for (int step = 0; step <= 30; ++step) {
-        if (collides(on_way(pose, found.poses[i + 1], step / 30.0), e)) return false;
-      }
-    }
-  }
-  return true;
-}
-
 bool are_equal(const std::array<std::optional<double>, 4>& a,
                const std::array<std::optional<double>, 4>& b) {
   for (std::size_t k = 0; k < 4; ++k) {
@@ -212,15 +164,6 @@ TEST_CASE("trims and sides of random groups are those of every point at every po
       CHECK(are_equal(trims_of(c), oracle.trims(radius)));
       CHECK(c.side == oracle.side(radius, c.first_touch));
       ++sides[static_cast<std::size_t>(c.side)];
-      for (std::size_t k = 0; k < 4; ++k) {
-        if (!trims_of(c)[k]) continue;
-        Box rest = box;  // with all that is below the floor
-        if (k == 0) rest.hi.y -= *trims_of(c)[k];
-        if (k == 1) rest.lo.y += *trims_of(c)[k];
-        if (k == 2) rest.hi.z -= *trims_of(c)[k];
-        if (k == 3) rest.lo.z += *trims_of(c)[k];
-        CHECK(is_free(found, rest, c, points));
-      }
     }
   }
   for (const Side side : {Side::kLeft, Side::kRight, Side::kAbove, Side::kBelow}) {

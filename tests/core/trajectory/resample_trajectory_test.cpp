@@ -153,24 +153,6 @@ TEST_CASE("resampling refuses a bound below the rounding, and motion that is no 
   CHECK_THROWS_AS(resampled(endless, 0.1), InputError);
 }
 
-TEST_CASE("thinning and resampling stays near the poses that were dropped") {
-  Random random(24);
-  const auto poses = smooth_path(random, {{0, 0, 0}, {50, 50, 5}}, 5000);
-  std::vector<Pose> kept;
-  for (const std::size_t i : thin_trajectory(poses, kBodyToResample, 0.5)) kept.push_back(poses[i]);
-  const auto out = resampled(kept, 0.01);
-  check_resampled(kept, out, 0.01);
-  double worst = 0;
-  for (std::size_t i = 0; i < poses.size(); i += 50) {
-    double nearest = 1e300;
-    for (const Pose& pose : out)
-      nearest = std::min(nearest, motion_bound(kBodyToResample, pose, poses[i]));
-    // Behind the last kept pose only the bound of thinning holds.
-    worst = std::max(worst, i + 100 < poses.size() ? nearest : 0);
-  }
-  CHECK(worst < 0.01);
-}
-
 TEST_CASE("every dropped pose is near the kept one that stands for it") {
   Random random(31);
   std::vector<Pose> poses;

@@ -228,22 +228,6 @@ TEST_CASE("corners of a coarse path are followed") {
   CHECK(path.control_points > 40);
 }
 
-TEST_CASE("many poses are smoothed in time that grows with their number") {
-  Random random(8);
-  std::vector<Pose> given;
-  double heading = 0, x = 0, y = 0;
-  for (int i = 0; i < 400000; ++i) {
-    heading += 0.001 * std::sin(i * 0.001);
-    x += 0.01 * std::cos(heading);
-    y += 0.01 * std::sin(heading);
-    given.push_back(pose_at(x + noise(random, 0.005), y + noise(random, 0.005), 0, heading));
-  }
-  const SmoothParameters asked{.within = 0.05};
-  const SmoothPath path = smooth_trajectory(given, asked, kCar);
-  CHECK(path.largest_deviation <= asked.within);
-  CHECK(path.poses.size() < 200000);
-}
-
 TEST_CASE("what cannot be smoothed is refused") {
   std::vector<Pose> given;
   for (int i = 0; i < 50; ++i) given.push_back(pose_at(0.05 * i, 0, 0, 0.01 * i));

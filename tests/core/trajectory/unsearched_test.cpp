@@ -2,28 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <set>
+#include <sstream>
 
 #include "clearway/follow.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
+#include "core/trajectory/paths.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/scenes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
-
-std::vector<Pose> straight(std::size_t count) {
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < count; ++i) {
-    poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5 * static_cast<double>(i), 0, 0}});
-  }
-  return poses;
-}
 
 /// A body that has the poses [from, to) of the path.
 Body there(std::uint32_t from, std::uint32_t to) {
@@ -33,61 +25,42 @@ Body there(std::uint32_t from, std::uint32_t to) {
   return body;
 }
 
-using Numbers = std::vector<std::uint32_t>;
+/// Stretches and lengths in one text: poses, metres, the bodies that are not there, and whether
+/// others are.
+std::string unsearched(const std::vector<Pose>& path, const std::vector<Body>& bodies) {
+  std::ostringstream out;
+  for (const auto& stretch : unsearched_stretches(path, bodies)) {
+    out << stretch.first_pose << "-" << stretch.last_pose << " at " << stretch.chainage_from
+        << " to " << stretch.chainage_to << " m without";
+    for (const std::uint32_t body : stretch.bodies) out << " " << body;
+    out << (stretch.has_answer ? ", in part; " : "; ");
+  }
+  const SearchedLength length = searched_length(path, bodies);
+  out << length.whole << " and " << length.part << " of " << length.path << " m";
+  return out.str();
+}
 
 }  // namespace
 
-TEST_CASE("a body without a pose leaves a stretch up to the poses that it has") {
-  const auto path = straight(11);
-  const auto stretches = unsearched_stretches(path, std::vector<Body>{there(2, 8)});
-  REQUIRE(stretches.size() == 2);
-  check_equal(stretches[0].first_pose, 0);
-  check_equal(stretches[0].last_pose, 1);
-  check_equal(stretches[0].chainage_from, 0);
-  check_equal(stretches[0].chainage_to, 1);
-  CHECK_FALSE(stretches[0].has_answer);
-  CHECK(stretches[0].bodies == Numbers{0});
-  check_equal(stretches[1].first_pose, 8);
-  check_equal(stretches[1].last_pose, 10);
-  check_equal(stretches[1].chainage_from, 3.5);
-  const SearchedLength length = searched_length(path, std::vector<Body>{there(2, 8)});
-  check_equal(length.path, 5);
-  check_equal(length.whole, 2.5);
-  check_equal(length.part, 0);
-}
-
-TEST_CASE("where other bodies are searched there is an answer of a part") {
-  const auto path = straight(11);
+TEST_CASE("a stretch without a body reaches up to the poses that the body has") {
+  const auto path = straight_poses(11, 0.5);
+  check_equal(unsearched(path, {there(2, 8)}),
+              "0-1 at 0 to 1 m without 0; 8-10 at 3.5 to 5 m without 0; 2.5 and 0 of 5 m");
+  // Where other bodies are searched there is an answer of a part.
   Body holes = there(0, 11);
   holes.path_pose.erase(holes.path_pose.begin() + 5);
   holes.poses.pop_back();
-  const std::vector<Body> bodies{there(2, 11), there(3, 11), holes};
-  const auto stretches = unsearched_stretches(path, bodies);
-  REQUIRE(stretches.size() == 3);
-  CHECK(stretches[0].bodies == Numbers{0, 1});
-  CHECK(stretches[0].has_answer);
-  CHECK(stretches[1].bodies == Numbers{1});
-  check_equal(stretches[1].first_pose, 2);
-  check_equal(stretches[1].last_pose, 2);
-  CHECK(stretches[2].bodies == Numbers{2});
-  check_equal(stretches[2].first_pose, 5);
-  check_equal(stretches[2].last_pose, 5);
-  const SearchedLength length = searched_length(path, bodies);
-  check_equal(length.whole, 2.5);
-  check_equal(length.part, 2.5);
-}
-
-TEST_CASE("nothing is unsearched of a model, nor of bodies with all poses") {
-  const auto path = straight(5);
-  CHECK(unsearched_stretches(path, {}).empty());
-  CHECK(unsearched_stretches(path, std::vector<Body>{there(0, 5)}).empty());
-  check_equal(searched_length(path, {}).whole, 2);
-  check_equal(searched_length({}, {}).path, 0);
-  CHECK(unsearched_stretches({}, {}).empty());
+  check_equal(unsearched(path, {there(2, 11), there(3, 11), holes}),
+              "0-1 at 0 to 1 m without 0 1, in part; 2-2 at 0.5 to 1.5 m without 1, in part; 5-5 "
+              "at 2 to 3 m without 2, in part; 2.5 and 2.5 of 5 m");
+  // Nothing is unsearched of a model, nor of bodies with all poses.
+  check_equal(unsearched(path, {}), "5 and 0 of 5 m");
+  check_equal(unsearched(path, {there(0, 11)}), "5 and 0 of 5 m");
+  check_equal(unsearched({}, {}), "0 and 0 of 0 m");
 }
 
 TEST_CASE("a body that leaves the path at its ends is a note, one that lacks poses inside is not") {
-  const auto poses = straight(21);
+  const auto poses = straight_poses(21, 0.5);
   const PathStations path(poses, 1);
   const BodyMount mount = BodyPivots{1, -1};
   FollowedPath followed = follow_path(path, mount, 1);
@@ -101,7 +74,7 @@ TEST_CASE("a body that leaves the path at its ends is a note, one that lacks pos
 }
 
 TEST_CASE("the lengths of a path that three bodies share stay within it, whatever is rounded") {
-  std::vector<Pose> path = straight(12);
+  std::vector<Pose> path = straight_poses(12, 0.5);
   for (int scene = 1; scene <= 50; ++scene) {
     for (std::size_t i = 0; i < path.size(); ++i) {
       path[i].translation[0] = 0.1 * scene * std::sqrt(static_cast<double>(i + i * i));
