@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "support/attitudes.hpp"
 #include "support/scenes.hpp"
 
 /// Paths and parts of poses for the tests of trajectories.
@@ -10,6 +12,12 @@ namespace clearway::test {
 
 /// A pose that is turned about z.
 inline Pose headed(double heading, const Vec3& at) { return rotation({0, 0, 1}, heading, at); }
+
+inline Pose turned_at(const Rotation& rotation, const Vec3& at) {
+  Pose pose = translation(at);
+  std::ranges::copy(rotation, pose.rotation);
+  return pose;
+}
 
 /// A pose every `step` metres along x.
 inline std::vector<Pose> straight_poses(std::size_t count, double step = 1) {

@@ -7,7 +7,6 @@
 
 #include "core/geometry/angle.hpp"
 #include "core/trajectory/paths.hpp"
-#include "support/attitudes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -17,12 +16,6 @@ using namespace clearway::test;
 namespace {
 
 void turn(Pose& pose, const Rotation& rotation) { std::ranges::copy(rotation, pose.rotation); }
-
-Pose turned_at(const Rotation& rotation, const Vec3& at) {
-  Pose pose = translation(at);
-  turn(pose, rotation);
-  return pose;
-}
 
 /// Changes a pose that has a heading.
 using Change = std::function<void(Pose& pose, double heading)>;

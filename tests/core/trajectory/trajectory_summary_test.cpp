@@ -5,26 +5,15 @@
 
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/paths.hpp"
-#include "support/attitudes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
-namespace {
-
-Pose turned_pose_at(const Rotation& rotation, const Vec3& at) {
-  Pose pose = translation(at);
-  std::ranges::copy(rotation, pose.rotation);
-  return pose;
-}
-
-}  // namespace
-
 TEST_CASE("a summary of no pose and of one") {
   check_equal(summarize_trajectory({}).poses, 0);
-  const std::vector<Pose> one{turned_pose_at(about_z(1), {1, 2, 3})};
+  const std::vector<Pose> one{turned_at(about_z(1), {1, 2, 3})};
   const TrajectorySummary summary = summarize_trajectory(one);
   check_equal(summary.poses, 1);
   check_equal(summary.length, 0);
@@ -35,9 +24,9 @@ TEST_CASE("a summary of no pose and of one") {
 
 TEST_CASE("a summary counts steps, turns and the box") {
   const std::vector<Pose> poses{
-      turned_pose_at(about_z(0), {0, 0, 0}), turned_pose_at(about_z(0.5), {3, 4, 0}),
-      turned_pose_at(about_z(0.5), {3, 4, 0}), turned_pose_at(about_z(0.25), {3, 5, -2}),
-      turned_pose_at(about_x(0.25) * about_z(0.25), {3, 5, 10})};
+      turned_at(about_z(0), {0, 0, 0}), turned_at(about_z(0.5), {3, 4, 0}),
+      turned_at(about_z(0.5), {3, 4, 0}), turned_at(about_z(0.25), {3, 5, -2}),
+      turned_at(about_x(0.25) * about_z(0.25), {3, 5, 10})};
   const TrajectorySummary summary = summarize_trajectory(poses);
   CHECK(summary.length == Approx(5 + std::sqrt(5) + 12));
   CHECK(summary.median_step == Approx(5));
@@ -53,9 +42,9 @@ TEST_CASE("a summary counts steps, turns and the box") {
 }
 
 TEST_CASE("turns are exact when they are small, and up to a half turn") {
-  const Pose identity = turned_pose_at(about_z(0), {0, 0, 0});
+  const Pose identity = turned_at(about_z(0), {0, 0, 0});
   for (const double angle : {1e-9, 1e-3, 1.0, 3.0, std::numbers::pi}) {
-    CHECK(turn_between(identity, turned_pose_at(about_y(angle), {5, 5, 5})) ==
+    CHECK(turn_between(identity, turned_at(about_y(angle), {5, 5, 5})) ==
           Approx(angle).epsilon(1e-6));
   }
 }
@@ -68,8 +57,8 @@ TEST_CASE("a summary names the axes that point up and ahead") {
     const double a = 0.02 * i;
     const double x = 30 * std::sin(a);
     const double y = -30 * std::cos(a);
-    car.push_back(turned_pose_at(about_z(a), {x, y, 0}));
-    camera.push_back(turned_pose_at(about_z(a) * optical, {x, y, 0}));
+    car.push_back(turned_at(about_z(a), {x, y, 0}));
+    camera.push_back(turned_at(about_z(a) * optical, {x, y, 0}));
   }
   const TrajectorySummary of_car = summarize_trajectory(car);
   check_equal(of_car.up.axis, 2);

@@ -20,84 +20,57 @@ using Curve = ProfilePoint::Curve;
 /// A track along x from station 0 to 1000.
 Alignment straight_track() { return {.plan = AlignmentPlan({{1000, 0, 0, {0, 0}, {1000, 0}}}, 0)}; }
 
-/// The slope of the values on either side, to check the slope that a function gives.
-template <typename At>
-double difference(const At& at, double station) {
-  constexpr double kStep = 1e-3;
-  return (at(station + kStep).value - at(station - kStep).value) / (2 * kStep);
-}
-
 }  // namespace
 
-TEST_CASE("a parabola of a profile joins both slopes") {
-  // From +1 % to -2 % over 120 m about station 300.
-  const AlignmentProfile profile(
-      {{.station = 0, .height = 100},
-       {.station = 300, .height = 103, .curve = Curve::kParabola, .before = 60, .after = 60},
-       {.station = 700, .height = 95}});
-  check_equal(profile.at(0).value, 100);
-  CHECK(profile.at(200).value == Approx(102).epsilon(1e-15));
-  CHECK(profile.at(200).slope == Approx(0.01));
-  const auto parabola = [](double x) { return 102.4 + 0.01 * x - 0.03 * x * x / 240; };
-  for (const double x : {0.0, 13.0, 60.0, 61.5, 119.0}) {
-    check_near(profile.at(240 + x).value, parabola(x), 1e-12);
-    check_near(profile.at(240 + x).slope, 0.01 - 0.03 * x / 120, 1e-15);
-  }
-  check_near(profile.at(360).value, 101.8, 1e-12);
-  CHECK(profile.at(700).value == Approx(95).epsilon(1e-15));
-  CHECK(profile.overlap_before(1) == Approx(-240));
-  CHECK(profile.overlap_before(2) == Approx(-340));
-}
-
-TEST_CASE("an unsymmetric parabola has its own length on either side") {
-  const AlignmentProfile profile(
-      {{.station = 0, .height = 0},
-       {.station = 100, .height = -2, .curve = Curve::kParabola, .before = 40, .after = 25},
-       {.station = 200, .height = 1}});
-  // e = l1 l2 (g2 - g1) / 2 (l1 + l2) above the point.
-  const double e = 40.0 * 25 * 0.05 / (2 * 65);
-  check_near(profile.at(100).value, -2 + e, 1e-14);
-  check_near(profile.at(80).value, -1.6 + e / 4, 1e-14);
-  check_near(profile.at(60).value, -1.2, 1e-14);
-  check_near(profile.at(112.5).value, -2 + 0.03 * 12.5 + e / 4, 1e-14);
-  check_near(profile.at(125).value, -2 + 0.03 * 25, 1e-14);
-  const auto at = [&](double s) { return profile.at(s); };
-  for (const double s : {70.0, 100.0, 110.0, 120.0}) {
-    check_near(profile.at(s).slope, difference(at, s), 1e-6);
-  }
-}
-
-TEST_CASE("a circle of a profile touches both slopes") {
-  // Heights and slopes by the equation of the circle, in 25 digits (mpmath).
-  const AlignmentProfile profile(
-      {{.station = 0, .height = 100},
-       {.station = 300, .height = 103, .curve = Curve::kCircle, .radius = 5000},
-       {.station = 700, .height = 95}});
-  const double known[][3] = {{250, 102.4375214796057522295745, 0.005000687393391333639932113},
-                             {290, 102.4775468145992125740054, -0.002999388622873865395819985},
-                             {300, 102.4375527234354622381833, -0.004999437608958322470277381},
-                             {333.25, 102.1607561295727822694357, -0.01165016566803550217280979}};
-  for (const auto& [station, height, slope] : known) {
-    check_near(profile.at(station).value, height, 1e-12);
-    check_near(profile.at(station).slope, slope, 1e-14);
-  }
-  check_near(profile.overlap_before(1), -225.005624156431592650834, 1e-11);
-  check_near(profile.overlap_before(2), 374.9831303419166687659908 - 700, 1e-11);
-  CHECK(profile.at(225).slope == Approx(0.01));
-  CHECK(profile.at(375).slope == Approx(-0.02));
-}
-
-TEST_CASE("a circle in a sag is the crest turned over") {
-  const auto profile = [](double sign) {
+TEST_CASE("curves of a profile join both slopes") {
+  const auto around = [](const ProfilePoint& middle, double first, double last, double end) {
     return AlignmentProfile(
-        {{.station = 0, .height = 0},
-         {.station = 300, .height = 3 * sign, .curve = Curve::kCircle, .radius = 5000},
-         {.station = 700, .height = -5 * sign}});
+        {{.station = 0, .height = first}, middle, {.station = end, .height = last}});
   };
-  for (const double s : {230.0, 300.0, 370.0}) {
-    CHECK(std::abs(profile(1).at(s).value + profile(-1).at(s).value) < 1e-14);
-    CHECK(std::abs(profile(1).at(s).slope + profile(-1).at(s).slope) < 1e-15);
+  // From +1 % to -2 % over 120 m about station 300.
+  const AlignmentProfile parabola =
+      around({.station = 300, .height = 103, .curve = Curve::kParabola, .before = 60, .after = 60},
+             100, 95, 700);
+  // An unsymmetric parabola has its own length on either side; e = l1 l2 (g2 - g1) / 2 (l1 + l2).
+  const AlignmentProfile skew =
+      around({.station = 100, .height = -2, .curve = Curve::kParabola, .before = 40, .after = 25},
+             0, 1, 200);
+  const double e = 40.0 * 25 * 0.05 / (2 * 65);
+  // Heights and slopes by the equation of the circle, in 25 digits (mpmath).
+  const auto circle = [&](double sign) {
+    return around({.station = 300, .height = 3 * sign, .curve = Curve::kCircle, .radius = 5000}, 0,
+                  -5 * sign, 700);
+  };
+  struct Row {
+    const AlignmentProfile& profile;
+    double station, height, slope;
+  };
+  const AlignmentProfile crest = circle(1);
+  for (const Row& row :
+       {Row{parabola, 0, 100, 0.01}, Row{parabola, 200, 102, 0.01}, Row{parabola, 240, 102.4, 0.01},
+        Row{parabola, 253, 102.508875, 0.00675}, Row{parabola, 301.5, 102.54221875, -0.005375},
+        Row{parabola, 360, 101.8, -0.02}, Row{parabola, 700, 95, -0.02}, Row{skew, 60, -1.2, -0.02},
+        Row{skew, 80, -1.6 + e / 4, -0.02 + e / 40}, Row{skew, 100, -2 + e, -0.02 + e / 20},
+        Row{skew, 112.5, -2 + 0.03 * 12.5 + e / 4, 0.03 - e / 25}, Row{skew, 125, -1.25, 0.03},
+        Row{crest, 225, 2.25, 0.01},
+        Row{crest, 250, 2.4375214796057522295745, 0.005000687393391333639932113},
+        Row{crest, 290, 2.4775468145992125740054, -0.002999388622873865395819985},
+        Row{crest, 300, 2.4375527234354622381833, -0.004999437608958322470277381},
+        Row{crest, 333.25, 2.1607561295727822694357, -0.01165016566803550217280979},
+        Row{crest, 375, 1.5, -0.02}}) {
+    CAPTURE(row.station, row.height);
+    const auto found = row.profile.at(row.station);
+    check_near(found.value, row.height, 1e-12);
+    check_near(found.slope, row.slope, 1e-14);
+    // A sag is the crest turned over.
+    if (&row.profile != &crest) continue;
+    check_near(circle(-1).at(row.station).value, -found.value, 1e-14);
+    check_near(circle(-1).at(row.station).slope, -found.slope, 1e-15);
   }
+  CHECK(parabola.overlap_before(1) == Approx(-240));
+  CHECK(parabola.overlap_before(2) == Approx(-340));
+  check_near(crest.overlap_before(1), -225.005624156431592650834, 1e-11);
+  check_near(crest.overlap_before(2), 374.9831303419166687659908 - 700, 1e-11);
 }
 
 TEST_CASE("where curves overlap by rounding the later one counts") {

@@ -171,31 +171,18 @@ TEST_CASE("a towed body has the heights and the roll of the way that its hitch h
   const double L = 6.5, hitch = 8, axle = 1.5, at = -0.8;
   const auto height = [](double s) { return 0.8 * std::sin(s / 14) + 0.03 * s; };
   const auto roll = [](double s) { return 0.1 * std::sin(s / 11 + 1); };
+  const auto heading = [](double s) { return 0.4 * std::sin(s / 20); };
   std::vector<Pose> path;
-  const auto tower = [&](double s) {
-    // x along the plane's heading and the slope, z leaning by the roll
-    const double heading = 0.4 * std::sin(s / 20), slope = 0.8 / 14 * std::cos(s / 14) + 0.03;
-    const double norm = std::hypot(1, slope);
-    const Vec3 x{std::cos(heading) / norm, std::sin(heading) / norm, slope / norm};
-    const Vec3 level{-std::sin(heading), std::cos(heading), 0};
-    const Vec3 up = cross(x, level);
-    const Vec3 y = std::cos(roll(s)) * level + std::sin(roll(s)) * up, z = cross(x, y);
-    return Pose{{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}, {0, 0, 0}};
-  };
   // The places of the plane are summed in small steps; `s` is the way in the plane.
   Vec3 place{0, 0, 0};
-  const int fine = 1000, every = 100;
-  for (int i = 0; i <= 60 * fine; ++i) {
-    const double s = static_cast<double>(i) / fine;
-    if (i % every == 0) {
-      Pose pose = tower(s);
-      pose.translation[0] = place.x;
-      pose.translation[1] = place.y;
-      pose.translation[2] = height(s);
-      path.push_back(pose);
+  for (int i = 0; i <= 60'000; ++i) {
+    const double s = i / 1000.0, slope = 0.8 / 14 * std::cos(s / 14) + 0.03;
+    place.z = height(s);
+    if (i % 100 == 0) {
+      path.push_back(
+          turned_at(about_z(heading(s)) * about_y(-std::atan(slope)) * about_x(roll(s)), place));
     }
-    const double heading = 0.4 * std::sin((s + 0.5 / fine) / 20);
-    place = place + 1.0 / fine * Vec3{std::cos(heading), std::sin(heading), 0};
+    place = place + 1e-3 * ahead(heading(s + 5e-4));
   }
   const Body body = follow_all(path, {BodyTowed{"", at, hitch, axle}})[0];
   // The hitch's way, its height and its up, summed over the poses.
