@@ -51,7 +51,7 @@ TEST_CASE("a stretch without a body reaches up to the poses that the body has") 
   holes.path_pose.erase(holes.path_pose.begin() + 5);
   holes.poses.pop_back();
   check_equal(unsearched(path, {there(2, 11), there(3, 11), holes}),
-              "0-1 at 0 to 1 m without 0 1, in part; 2-2 at 0.5 to 1.5 m without 1, in part; 5-5 "
+              "0-2 at 0 to 1 m without 0 1, in part; 2-2 at 1 to 1.5 m without 1, in part; 5-5 "
               "at 2 to 3 m without 2, in part; 2.5 and 2.5 of 5 m");
   // Nothing is unsearched of a model, nor of bodies with all poses.
   check_equal(unsearched(path, {}), "5 and 0 of 5 m");
