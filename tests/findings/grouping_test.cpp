@@ -291,32 +291,6 @@ TEST_CASE("the usual grouping follows from how far apart the colliding points ar
   }
 }
 
-TEST_CASE("a sign of nine points in a thin scan is a conflict, and noise in a dense one is not") {
-  // Nine points 0.25 m apart, and a pole whose points are as far apart, 5 m away.
-  Found thin;
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 3; ++k) thin.quanta.push_back({0, 250 * i, 3000 + 250 * k});
-  }
-  for (int k = 0; k < 8; ++k) thin.quanta.push_back({5000, 0, 250 * k});
-  const Conflicts found = thin.conflicts();
-  REQUIRE(found.listed.size() == 2);
-  check_equal(found.listed[0].points, 9);
-  CHECK(found.gap == Approx(0.75));
-  check_equal(found.min_points, 1);
-
-  // A wall whose points are 2 cm apart, and three points of noise.
-  Found dense;
-  for (int i = 0; i < 50; ++i) {
-    for (int k = 0; k < 50; ++k) dense.quanta.push_back({0, 20 * i, 20 * k});
-  }
-  for (int k = 0; k < 3; ++k) dense.quanta.push_back({9000, 100 * k, 0});
-  const Conflicts wall = dense.conflicts();
-  check_equal(wall.listed.size(), 1);
-  check_equal(wall.small_groups, 1);
-  check_equal(wall.gap, 0.3);
-  check_equal(wall.min_points, 10);
-}
-
 TEST_CASE("with few places, or where nothing collides, the grouping is fixed") {
   Found few;
   for (int k = 0; k < 9; ++k) few.quanta.push_back({5000 * k, 0, 0});

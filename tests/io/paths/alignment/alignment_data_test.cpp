@@ -141,23 +141,3 @@ TEST_CASE("public alignments are read, or refused with the reason") {
   check_equal(crossing.size(), 37);
   check_near(crossing.back().translation[2], 126.005283, 1e-9);
 }
-
-TEST_CASE("a ramp by a Bloss curve is 14.4 mm from an even one at a fifth of its length") {
-  const auto cant = [](const std::string& name) {
-    const auto poses =
-        read_alignment(data_folder() / "cases" / name, {.station_from = 20, .station_to = 20});
-    return 1.5 * poses.at(0).rotation[7];
-  };
-  check_near(cant("cant_linear.xml"), 0.030, 1e-12);
-  check_near(cant("cant_bloss.xml"), 0.0156, 1e-12);
-}
-
-TEST_CASE("a Czech alignment with a PVI and a curve at one place is read") {
-  std::vector<Message> remarks;
-  // From 1 % to level over 40 m: the crown is 0.05 m below the point at its middle.
-  const auto poses =
-      read_alignment(data_folder() / "cases" / "cz_pvi_and_paracurve.xml",
-                     {.station_from = 100, .station_to = 100, .cant = CantLine::kNone}, &remarks);
-  CHECK(codes_in(remarks).empty());
-  check_near(poses.at(0).translation[2], 300.95, 1e-9);
-}

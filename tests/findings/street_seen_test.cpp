@@ -1,4 +1,4 @@
-// What is found in a real street, against definitions and against an independent program.
+// Seen space of a real scan, against the answers of an independent program.
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "clearway/clearway.hpp"
-#include "findings/conflict_fixture.hpp"
-#include "findings/station_oracle.hpp"
-#include "io/scans/requantize.hpp"
+#include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/store_fixture.hpp"
 #include "support/test_data.hpp"
@@ -20,33 +18,6 @@ using namespace clearway::test;
 namespace {
 
 std::filesystem::path street(const std::string& name) { return data_folder() / "street" / name; }
-
-std::vector<Pose> street_path() { return read_trajectory(street("trajectory.txt")); }
-
-/// The car's points above a height.
-Model beetle(double above) {
-  Model model{read_model_points(street("beetle.ply"))};
-  std::erase_if(model.vertices, [&](const Vec3& m) { return m.z < above; });
-  return model;
-}
-
-/// The colliding points, at the radius, in a part of the street.
-Found crop(const Store& store, double radius, const ScratchFolder& folder, const Box& part) {
-  const Query query(read_model_points(street("beetle.ply")), street_path(),
-                    {.radius = radius, .first_pose = true});
-  search(store, query, folder / "out.h5", {.threads = 2, .overwrite = true});
-  const Result result(folder / "out.h5");
-  Found out;
-  out.quantisation = result.reader().header().quantisation;
-  for (const Vec3& p : result.xyz()) {
-    if (p.x < part.lo.x || p.x > part.hi.x || p.y < part.lo.y || p.y > part.hi.y) continue;
-    auto& q = out.quanta.emplace_back();
-    for (int k = 0; k < 3; ++k) {
-      q[static_cast<std::size_t>(k)] = quantum_at(out.quantisation, k, p[k]).value();
-    }
-  }
-  return out;
-}
 
 /// FNV-1a with 64 bits over numbers of eight bytes.
 class Fnv {
@@ -99,58 +70,17 @@ void convert_a_quarter(const std::filesystem::path& folder) {
 
 }  // namespace
 
-TEST_CASE("groups of the street are those of all pairs") {
-  const ScratchFolder folder;
-  convert({street("street.las")}, folder / "street.h5", {.threads = 2});
-  const Store store(folder / "street.h5");
-  for (const auto& [radius, part] : {std::pair(0.1, Box{{20, 0, 0}, {22.5, 30, 0}}),
-                                     std::pair(0.5, Box{{20, 0, 0}, {21, 30, 0}})}) {
-    Found found = crop(store, radius, folder, part);
-    REQUIRE(found.quanta.size() > 2000);
-    REQUIRE(found.quanta.size() < 9000);
-    for (const Vec3& offset : {Vec3{0, 0, 0}, Vec3{500'000, 4'000'000, 100}}) {
-      for (int k = 0; k < 3; ++k) found.quantisation.offset[k] = offset[k];
-      for (const double gap : {0.1, 0.3, 1.0}) check_groups(found, gap);
-    }
-  }
-}
-
-TEST_CASE("the station table of the street is that of its clearances and contacts") {
-  const ScratchFolder folder;
-  convert({street("street.las")}, folder / "street.h5", {.threads = 2});
-  // The lower part stands on the ground, so that nothing would be clear.
-  const Query query(beetle(-1), street_path(),
-                    {.radius = 0.1, .first_pose = true, .clearance = 0.5});
-  search(Store(folder / "street.h5"), query, folder / "out.h5", {.threads = 2});
-  const Result result(folder / "out.h5");
-  const auto first = result.first_pose(), last = result.last_pose();
-  REQUIRE(first.size() > 100);
-  for (const double every : {0.5, 5.0, 50.0}) {
-    CAPTURE(every);
-    const StationTable table = station_table(result, query.poses, {.every = every});
-    check_distances(table, expected_rows(result, query, every), query.radius);
-    const std::vector<std::size_t> row_of = rows_of(query.poses, every);
-    std::vector<bool> at_ends(table.rows.size()), between(table.rows.size());
-    for (std::size_t i = 0; i < first.size(); ++i) {
-      at_ends[row_of[first[i]]] = at_ends[row_of[last[i]]] = true;
-      for (std::size_t row = row_of[first[i]]; row <= row_of[last[i]]; ++row) between[row] = true;
-    }
-    for (std::size_t row = 0; row < table.rows.size(); ++row) {
-      const Verdict verdict = table.rows[row].verdict;
-      if (at_ends[row]) CHECK(verdict == Verdict::kConflict);
-      if (!between[row]) CHECK(verdict != Verdict::kConflict);
-    }
-  }
-}
-
 TEST_CASE("with a quarter of the street's beams the unseen cubes are those of another program") {
   const ScratchFolder folder;
   convert_a_quarter(folder.folder());
+  Model car{read_model_points(street("beetle.ply"))};
+  std::erase_if(car.vertices, [](const Vec3& m) { return m.z < 0.3; });
   QueryParameters parameters{.radius = 0.1, .between_poses = true};
   parameters.seen = true;
   parameters.seen_cube = 0.1;
-  search(Store(folder / "scan.h5"), Query(beetle(0.3), street_path(), parameters),
-         folder / "out.h5", {.device = Device::kCpu, .threads = 2});
+  const Query query(std::move(car), read_trajectory(street("trajectory.txt")), parameters);
+  search(Store(folder / "scan.h5"), query, folder / "out.h5",
+         {.device = Device::kCpu, .threads = 2});
   const Result result(folder / "out.h5");
   const UnseenCubes cubes = result.unseen();
   const SeenSummary seen = *result.answer().seen;
