@@ -2,6 +2,7 @@
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
+#include "support/bytes/pcd_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
@@ -9,67 +10,106 @@
 using namespace clearway;
 using namespace clearway::test;
 
+namespace {
+
+/// Writes empty files.
+void write_all(const ScratchFolder& scratch, const std::vector<std::string>& names) {
+  for (const std::string& name : names) scratch.write(name, "");
+}
+
+}  // namespace
+
 TEST_CASE("content counts more than the ending of the name") {
-  ScratchFolder scratch;
-  check_equal(read_all(scratch.write("a.ply", laz_bytes(0, 20).build())).quanta.size(), 20);
-  check_equal(read_all(scratch.write("a.xyz", LasBytes().build())).quanta.size(), 3);
+  const ScratchFolder scratch;
   E57Bytes e57;
   e57.scans = {e57_scan({1, 2}, {3, 4}, {5, 6})};
-  check_equal(read_all(scratch.write("a.las", e57.build())).positions.size(), 2);
-  check_equal(read_all(scratch.write("b",
-                                     "ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\n"
-                                     "property int y\nproperty int z\nend_header\n"))
-                  .size(),
-              0);
+  const std::tuple<const char*, std::string, std::size_t> rows[] = {
+      {"a.ply", laz_bytes(0, 20).build(), 20},
+      {"a.xyz", LasBytes().build(), 3},
+      {"a.las", e57.build(), 2},
+      {"b",
+       "ply\nformat ascii 1.0\nelement vertex 0\nproperty int x\nproperty int y\nproperty int z\n"
+       "end_header\n",
+       0},
+      {"a.xyz", "# .PCD v.7\nFIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n", 1},
+      {"scan000.3D", "0 0 100\n", 1}};  // by its name alone
+  for (const auto& [name, bytes, points] : rows) {
+    check_equal(read_all(scratch.write(name, bytes)).size(), points);
+  }
 }
 
 TEST_CASE("what is not read is refused by the name of its format, with advice") {
-  ScratchFolder scratch;
-  const auto refusal = [&](const std::string& name, const std::string& bytes) {
-    const auto path = scratch.write(name, bytes);
-    const std::string message = refusal_of(path);
-    check_says(message, path.string());
-    return message;
-  };
-  check_says(refusal("c.e57", ""), "E57 header");
-  check_says(refusal("c.obj", "v 1 2 3\n"), "mesh ... expected points");
-  for (const std::string name : {"c.glb", "c.gltf", "c.dae"}) {
-    // A mesh that is not read cannot be sampled before it is exported.
-    check_says(refusal(name, "glTF"), "not read ... STL, OBJ or PLY first");
-  }
-  check_says(refusal("c.las", "1 2 3\n"), "LAS header");
-  check_says(refusal("d.las", std::string(500, ' ')), "LASF");
-  check_says(refusal("c.ply", "1 2 3\n"), "`ply`");
-  check_says(refusal("c.unknown", "1 2 3\n"), "unknown format");
-  check_says(refusal("c.shp", std::string("\0\0\x27\x0A\0\0", 6)),
-             "is a shapefile ... as CSV or LAS");
-  check_says(refusal("c.gpkg", std::string("SQLite format 3\0", 16)), "is a GeoPackage");
+  const std::tuple<const char*, std::string, const char*> rows[] = {
+      {"c.e57", "", "E57 header"},
+      {"c.obj", "v 1 2 3\n", "mesh ... expected points"},
+      // A mesh that is not read cannot be sampled before it is exported.
+      {"c.glb", "glTF", "not read ... STL, OBJ or PLY first"},
+      {"c.gltf", "glTF", "not read ... STL, OBJ or PLY first"},
+      {"c.dae", "glTF", "not read ... STL, OBJ or PLY first"},
+      {"c.las", "1 2 3\n", "LAS header"},
+      {"d.las", std::string(500, ' '), "LASF"},
+      {"c.ply", "1 2 3\n", "`ply`"},
+      {"c.unknown", "1 2 3\n", "unknown format"},
+      {"c.shp", std::string("\0\0\x27\x0A\0\0", 6), "is a shapefile ... as CSV or LAS"},
+      {"c.gpkg", std::string("SQLite format 3\0", 16), "is a GeoPackage"}};
+  for (const auto& [name, bytes, words] : rows) check_says(refusal_of_file(name, bytes), words);
 }
 
-TEST_CASE("PCD is read by its content too, 3DTK scans by their name") {
-  ScratchFolder scratch;
-  const std::string pcd = "# .PCD v.7\nFIELDS x y z\nPOINTS 1\nDATA ascii\n1 2 3\n";
-  check_equal(read_all(scratch.write("a.xyz", pcd)).positions, {{1, 2, 3}});
-  CHECK(read_all(scratch.write("scan000.3D", "0 0 100\n")).positions ==
-        std::vector<Vec3>{{1, 0, 0}});
+TEST_CASE("the points of many batches arrive in their order, twice") {
+  constexpr int kPoints = 150'001;
+  LasBytes las;
+  las.scale = {1, 1, 1};
+  las.offset = {0, 0, 0};
+  las.points.clear();
+  std::string rows, ply_rows, columns;
+  for (int i = 0; i < kPoints; ++i) {
+    las.points.push_back({i, -i, 2 * i});
+    ply_rows += 'a';
+    for (const int k : {1, -1, 2}) rows += raw(static_cast<float>(k * i));
+    ply_rows += rows.substr(rows.size() - 12);
+  }
+  for (const int k : {1, -1, 2}) {
+    for (int i = 0; i < kPoints; ++i) columns += raw(static_cast<float>(k * i));
+  }
+  LasBytes longer = las;
+  longer.extra_bytes = 3;
+  PcdHeaderText pcd;
+  pcd.width = pcd.points = std::to_string(kPoints);
+  const std::pair<const char*, std::string> files[] = {
+      {"a.las", las.build()},
+      {"b.las", longer.build()},
+      {"a.pcd", pcd.build("binary") + rows},
+      {"b.pcd", pcd.build("binary_compressed") + compressed(columns)},
+      {"a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + pcd.points +
+                    "\nproperty uchar a\nproperty float x\nproperty float y\nproperty float z\n"
+                    "end_header\n" +
+                    ply_rows}};
+  const ScratchFolder scratch;
+  for (const auto& [name, bytes] : files) {
+    INFO(name);
+    const auto reader = open_point_file(scratch.write(name, bytes));
+    for (int pass = 0; pass < 2; ++pass) {
+      const ReadCloud cloud = read_all(*reader);
+      REQUIRE(cloud.size() == kPoints);
+      for (int i = 0; i < kPoints; ++i) {
+        const Vec3 expected{1.0 * i, -1.0 * i, 2.0 * i};
+        if (cloud.at(static_cast<std::size_t>(i)) != expected) FAIL("point " << i);
+      }
+      reader->rewind();
+    }
+  }
 }
 
 TEST_CASE("what is left out of a folder is said, poses of 3DTK scans are not left out") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   std::vector<Message> remarks;
-  for (const char* name : {"a.las", "scan000.3d", "scan000.pose", "scan000.frames"}) {
-    scratch.write(name, "");
-  }
+  write_all(scratch, {"a.las", "scan000.3d", "scan000.pose", "scan000.frames"});
   check_equal(list_point_files({scratch.folder()}, &remarks).size(), 2);
   CHECK(remarks.empty());
-  for (const char* name : {"1.txt", "2.csv", "3.obj", "4", "5.md", "scan001.pose", ".hidden"}) {
-    scratch.write(name, "");
-  }
+  write_all(scratch, {"1.txt", "2.csv", "3.obj", "4", "5.md", "scan001.pose", ".hidden"});
   std::filesystem::create_directory(scratch.folder() / "more");
   check_equal(list_point_files({scratch.folder(), scratch.folder() / "1.txt"}, &remarks).size(), 3);
-  REQUIRE(remarks.size() == 1);
-  CHECK(remarks[0].severity == Message::Severity::kNote);
-  check_equal(remarks[0].code, "left-out");
+  REQUIRE(codes_of(remarks) == "note left-out");
   check_says(remarks[0].text,
              "left out 6 files (1.txt, 2.csv, 3.obj, 4, 5.md and 1 more) and 1 folder");
   CHECK(remarks[0].numbers ==
@@ -77,8 +117,7 @@ TEST_CASE("what is left out of a folder is said, poses of 3DTK scans are not lef
 }
 
 TEST_CASE("what is left out of a folder although it has points is warned of, with its name") {
-  ScratchFolder scratch;
-  scratch.write("a.las", "");
+  const ScratchFolder scratch;
   const std::string points = "1.5 2.5 3.5\n1.6 2.5 3.5\n1.7 2.5 3.5\n";
   for (const char* name : {"north.txt", "south.csv"}) scratch.write(name, points);
   scratch.write("readme.txt", "scanned in May\n");
@@ -86,34 +125,27 @@ TEST_CASE("what is left out of a folder although it has points is warned of, wit
   for (const char* name : {"old/deep", "photos"}) {
     std::filesystem::create_directories(scratch.folder() / name);
   }
-  scratch.write("old/deep/b.laz", "");
+  write_all(scratch, {"a.las", "old/deep/b.laz"});
   std::vector<Message> remarks;
   check_equal(list_point_files({scratch.folder()}, &remarks).size(), 1);
-  REQUIRE(remarks.size() == 2);
-  CHECK(remarks[0].severity == Message::Severity::kWarning);
-  check_equal(remarks[0].code, "left-out");
+  REQUIRE(codes_of(remarks) == "left-out, note left-out");
   check_says(remarks[0].text,
              "left out 1 folder that holds point files (old) and 2 files that look like points "
              "(north.txt, south.csv)");
-  CHECK(remarks[1].severity == Message::Severity::kNote);
   check_says(remarks[1].text, "left out 2 files (readme.txt, view.json) and 1 folder (photos)");
 }
 
 TEST_CASE("poses beside scans that are not placed by them are warned of") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   std::vector<Message> remarks;
-  for (const char* name : {"scan000.xyz", "scan000.pose", "scan001.pts", "scan001.frames"}) {
-    scratch.write(name, "");
-  }
+  write_all(scratch, {"scan000.xyz", "scan000.pose", "scan001.pts", "scan001.frames"});
   check_equal(list_point_files({scratch.folder()}, &remarks).size(), 2);
-  REQUIRE(remarks.size() == 1);
-  CHECK(remarks[0].severity == Message::Severity::kWarning);
-  check_equal(remarks[0].code, "poses-not-applied");
+  REQUIRE(codes_of(remarks) == "poses-not-applied");
   check_says(remarks[0].text, "2 files ... scan000.pose, scan001.frames");
 }
 
 TEST_CASE("the files with the poses of scans are among those that are read") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   const auto first = scratch.write("scan000.3d", ""), pose = scratch.write("scan000.pose", "");
   const auto other = scratch.write("a.las", ""), second = scratch.write("scan001.3d", "");
   CHECK(with_pose_files({first, other, second}) ==
@@ -121,9 +153,8 @@ TEST_CASE("the files with the poses of scans are among those that are read") {
 }
 
 TEST_CASE("a folder's point files count in byte order of their names") {
-  ScratchFolder scratch;
-  std::filesystem::create_directory(scratch.folder() / "tiles");
-  std::filesystem::create_directory(scratch.folder() / "tiles" / "sub.las");
+  const ScratchFolder scratch;
+  std::filesystem::create_directories(scratch.folder() / "tiles" / "sub.las");
   for (const std::string name :
        {"b.las", "B.las", "a10.ply", "a2.XYZ", "\xC3\xA4.las", ".hidden.las", "readme.md",
         "readme.txt", "path.csv", "z.e57", "none"}) {
@@ -139,7 +170,7 @@ TEST_CASE("a folder's point files count in byte order of their names") {
 }
 
 TEST_CASE("a missing input and a folder without points are refused") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   CHECK_THROWS_AS(list_point_files({scratch.folder() / "missing.las"}), ResourceError);
   CHECK_THROWS_AS(list_point_files({scratch.folder()}), InputError);
   CHECK(list_point_files({}).empty());

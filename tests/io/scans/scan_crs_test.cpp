@@ -1,3 +1,5 @@
+// Units and scales of coordinate reference systems; what is wrong with them is in
+// tests/formats/crs.case.
 #include "io/scans/scan_crs.hpp"
 
 #include <cmath>
@@ -68,22 +70,6 @@ std::string wrong_scale(const Case& expected) {
                         std::to_string(scale->mean);
 }
 
-const std::string kPlane =
-    R"(PROJCS["p",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
-    R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],)"
-    R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
-    R"(PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],)"
-    R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1])";
-
-std::string with_unit(const std::string& unit) {
-  std::string text = kPlane;
-  return text.replace(text.rfind("UNIT"), std::string::npos, unit + "]");
-}
-
-std::string heights(const std::string& unit, const std::string& axis = "UP") {
-  return "VERT_CS[\"v\",VERT_DATUM[\"d\",2005]," + unit + ",AXIS[\"h\"," + axis + "]]";
-}
-
 std::string text_of(std::u16string_view text, bool big) {
   std::string bytes;
   for (const char16_t c : text) {
@@ -111,92 +97,21 @@ TEST_CASE("units and scales of coordinate reference systems of every kind are th
   }
 }
 
-TEST_CASE("what PROJ does not read of a system is known, and does no harm") {
-  const std::string plane = kPlane + "]";
-  std::string deep = "PROJCS[\"a\"", json = R"({"type":"ProjectedCRS")";
-  for (int i = 0; i < 20'000; ++i) {
-    deep += ",A[";
-    json += R"(,"base_crs":{"a":1)";
-  }
-  for (const std::string& text :
-       std::vector<std::string>{"]",
-                                "PROJCS",
-                                "PROJCS[",
-                                "PROJCS[\"",
-                                "UNIT[\"metre\",1]",
-                                "]]PROJCS[UNIT[1]]",
-                                "[[[[",
-                                "hall",
-                                "Unknown",
-                                "UTM32",
-                                "+units=m",
-                                "{}",
-                                "26910",
-                                "EPSG:99999",
-                                kPlane,
-                                plane + ",foo",
-                                plane + "," + heights("UNIT"),
-                                plane + "," + with_unit("UNIT[\"m\",1]"),
-                                "COMPD_CS[\"c\"," + heights("UNIT[\"m\",1]") + "," + plane + "]",
-                                deep,
-                                std::string(32'000, 'A') + std::string(33'000, '['),
-                                json}) {
-    INFO(text.substr(0, 300));
-    CHECK_FALSE(scan_crs_of(text).unread.empty());
-  }
-  for (const std::string& text :
-       std::vector<std::string>{"", plane + " \n", plane + "]]", plane + "," + plane,
-                                "  " + plane + ",", "COMPD_CS[\"c\"," + plane + "]"}) {
-    INFO(text);
-    CHECK(scan_crs_of(text).unread.empty());
-  }
-}
-
-TEST_CASE("no text makes PROJ open a file") {
-  const std::string extension = kPlane + ",EXTENSION[\"PROJ4\",\"+proj=utm +zone=32 ";
-  for (const std::string& text : std::vector<std::string>{
-           extension + "+nadgrids=/etc/passwd\"]]", extension + "+ nadgrids = /etc/passwd\"]]",
-           extension + "+init=epsg:4326\"]]",
-           "+proj=pipeline +step +proj=tinshift +file=/etc/passwd",
-           "+proj=defmodel +model=/etc/passwd +type=crs", "+init=/etc/passwd:a +type=crs",
-           "+proj=longlat +geoidgrids=/etc/passwd +type=crs"}) {
-    INFO(text);
-    CHECK(names_files(text));
-    CHECK_FALSE(scan_crs_of(text).unread.empty());
-  }
-  CHECK(names_files(R"(PARAMETERFILE["Geoid (height correction) model file","a.tif"])"));
-  CHECK(names_files(R"({"name":"Vertical offset file","value":"/etc/passwd"})"));
-  CHECK(names_files(R"({"name":"Vertical offset fil\u0065","value":"/etc/passwd"})"));
-  CHECK_FALSE(names_files(extension + "+nadgrids=@null +wktext\"]]"));
-}
-
-TEST_CASE("units that cannot be taken as they are make trouble") {
-  const auto trouble = [](const std::string& text) { return scan_crs_of(text).units.trouble; };
-  CHECK(trouble(with_unit(R"(UNIT["metre",1])")).empty());
-  CHECK(trouble(with_unit(R"(UNIT["US survey foot",0.304801])")).empty());
-  check_equal(trouble(with_unit(R"(UNIT["kilometre",1000])")), "its unit is 1000 m");
-  check_equal(trouble(with_unit(R"(UNIT["yard",0.9144])")), "its unit is 0.9144 m");
-  check_equal(trouble(with_unit(R"(UNIT["foot",1])")), "its unit is named \"foot\" and has 1 m");
-  CHECK(trouble(kPlane + "]," + heights(R"(UNIT["metre",1])", "DOWN")) ==
-        "its heights count downwards");
-  const std::string both = "COMPD_CS[\"c\"," + kPlane + "]," + heights(R"(UNIT["metre",1])") + "],";
-  CHECK(trouble(both + heights(R"(UNIT["foot",0.3048])")) ==
-        "it names two systems of heights, in metre and in foot");
-  CHECK(trouble(both + heights(R"(UNIT["metre",1])")).empty());
-}
-
 TEST_CASE("heights go with other coordinates in a unit that differs by less than 0.01 %") {
   const double survey = metres_of(LengthUnit::kUsSurveyFoot);
-  CHECK(heights_trouble(survey, LengthUnit::kMetre) ==
-        "its heights are in us-survey-foot, its other coordinates in metre");
-  CHECK(heights_trouble(0.9, LengthUnit::kFoot) ==
-        "its heights are in 0.9 m, its other coordinates in foot");
-  CHECK(heights_trouble(1.0002, LengthUnit::kMetre).starts_with("its heights are in 1.0002 m"));
-  CHECK(heights_trouble(1.00005, LengthUnit::kMetre).empty());
-  CHECK(heights_trouble(survey, LengthUnit::kFoot).empty());
-  CHECK(heights_trouble(0, LengthUnit::kMetre).empty());
-  CHECK(heights_trouble(survey, LengthUnit::kUnknown).empty());
-  CHECK(heights_trouble(survey, LengthUnit::kDegrees).empty());
+  const std::tuple<double, LengthUnit, const char*> rows[] = {
+      {survey, LengthUnit::kMetre,
+       "its heights are in us-survey-foot, its other coordinates in metre"},
+      {0.9, LengthUnit::kFoot, "its heights are in 0.9 m, its other coordinates in foot"},
+      {1.0002, LengthUnit::kMetre, "its heights are in 1.0002 m"},
+      {1.00005, LengthUnit::kMetre, ""},
+      {survey, LengthUnit::kFoot, ""},
+      {0, LengthUnit::kMetre, ""},
+      {survey, LengthUnit::kUnknown, ""},
+      {survey, LengthUnit::kDegrees, ""}};
+  for (const auto& [height_unit, plane, words] : rows) {
+    check_says(heights_trouble(height_unit, plane), words);
+  }
 }
 
 TEST_CASE("the text of a record ends at its first zero, and may be UTF-16") {

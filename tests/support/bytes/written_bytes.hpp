@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "io/files/file.hpp"
 
@@ -14,8 +12,11 @@ namespace clearway::test {
 /// The bytes that a writer wrote to a nameless file.
 class WrittenBytes {
  public:
-  explicit WrittenBytes(const File& file) : bytes_(file.size_bytes()) { file.read_at(0, bytes_); }
+  explicit WrittenBytes(const File& file) : bytes_(file.size_bytes(), '\0') {
+    file.read_at(0, std::as_writable_bytes(std::span(bytes_)));
+  }
 
+  const std::string& all() const { return bytes_; }
   std::size_t size() const { return bytes_.size(); }
 
   template <typename Value>
@@ -25,25 +26,23 @@ class WrittenBytes {
     std::memcpy(&value, bytes_.data() + offset, sizeof value);
     return value;
   }
-
+  /// The number of so many bytes, the lowest first.
+  std::uint64_t number(std::size_t offset, unsigned bytes) const {
+    std::uint64_t value = 0;
+    std::memcpy(&value, bytes_.substr(offset, bytes).data(), bytes);
+    return value;
+  }
   /// The text at `offset`, up to the first zero byte and at most `bytes` long.
   std::string text(std::size_t offset, std::size_t bytes) const {
-    std::string out;
-    for (std::size_t i = 0; i < bytes && at<char>(offset + i) != '\0'; ++i) {
-      out += at<char>(offset + i);
-    }
-    return out;
+    const std::string part = bytes_.substr(offset, bytes);
+    return part.substr(0, part.find('\0'));
   }
-
   bool zero(std::size_t offset, std::size_t bytes) const {
-    for (std::size_t i = 0; i < bytes; ++i) {
-      if (at<char>(offset + i) != '\0') return false;
-    }
-    return true;
+    return bytes_.substr(offset, bytes) == std::string(bytes, '\0');
   }
 
  private:
-  std::vector<std::byte> bytes_;
+  std::string bytes_;
 };
 
 inline File nameless_file() {

@@ -1,7 +1,7 @@
 #include "io/scans/las/las_writer.hpp"
 
+#include <sstream>
 #include <stdexcept>
-#include <vector>
 
 #include "clearway/error.hpp"
 #include "support/bytes/written_bytes.hpp"
@@ -19,95 +19,84 @@ const QuantumBox kBounds{{-5, -2000000000, 0}, {1, 7, 2000000000}};
 const Quantisation kQuantisation{{0.001, 0.002, 0.0001}, {100, -200, 0.5}};
 const std::string kWkt = "LOCAL_CS[\"site\",UNIT[\"metre\",1]]";
 
-test::WrittenBytes written(const LasHeader& header, const Quanta& points,
-                           const std::vector<std::uint32_t>& poses = {}) {
-  const File file = test::nameless_file();
+WrittenBytes written(const LasHeader& header, const Quanta& points,
+                     const std::vector<std::uint32_t>& poses = {}) {
+  const File file = nameless_file();
   LasWriter writer(file, header);
   const FieldValues field = std::span<const std::uint32_t>(poses);
   writer.write(points, std::span(&field, header.fields.size()));
   writer.finish();
-  return test::WrittenBytes(file);
+  return WrittenBytes(file);
 }
 
 LasHeader header_of(std::uint64_t points) {
   return {.quantisation = kQuantisation, .points = points, .bounds = kBounds};
 }
 
-void check_geometry(const test::WrittenBytes& bytes) {
+/// Checks fields of the file: "24:1=2" is that the byte at 24 is 2, "26:32=OTHER" that the text of
+/// 32 bytes at 26 is OTHER, "4:20=" that 20 bytes at 4 are zero.
+void check_fields(const WrittenBytes& bytes, const std::string& fields, std::size_t first = 0) {
+  std::istringstream in(fields);
+  for (std::string field; in >> field;) {
+    INFO(field);
+    const std::size_t at = first + std::stoul(field);
+    const auto size = static_cast<unsigned>(std::stoul(field.substr(field.find(':') + 1)));
+    const std::string value = field.substr(field.find('=') + 1);
+    if (value.empty()) {
+      CHECK(bytes.zero(at, size));
+    } else if (std::isdigit(value[0])) {
+      CHECK(std::to_string(bytes.number(at, size)) == value);
+    } else {
+      CHECK(bytes.text(at, size) == value);
+    }
+  }
+}
+
+/// Checks scale, offset and bounds, and that the file has the size that its header declares, but
+/// for extended records.
+void check_whole(const WrittenBytes& bytes, std::uint64_t behind = 0) {
   for (int k = 0; k < 3; ++k) {
     CHECK(bytes.at<double>(131 + 8 * k) == kQuantisation.scale[k]);
     CHECK(bytes.at<double>(155 + 8 * k) == kQuantisation.offset[k]);
     CHECK(bytes.at<double>(179 + 16 * k) == coordinate(kQuantisation, k, kBounds.hi[k]));
     CHECK(bytes.at<double>(187 + 16 * k) == coordinate(kQuantisation, k, kBounds.lo[k]));
   }
+  const std::uint64_t points =
+      bytes.number(25, 1) == 4 ? bytes.number(247, 8) : bytes.number(107, 4);
+  check_equal(bytes.size(), bytes.number(96, 4) + points * bytes.number(105, 2) + behind);
 }
 
-/// The size that a file's own header declares, EVLRs aside.
-std::uint64_t declared_bytes(const test::WrittenBytes& bytes) {
-  const bool version_14 = bytes.at<std::uint8_t>(25) == 4;
-  const std::uint64_t points =
-      version_14 ? bytes.at<std::uint64_t>(247) : bytes.at<std::uint32_t>(107);
-  return bytes.at<std::uint32_t>(96) + points * bytes.at<std::uint16_t>(105);
+void check_points(const WrittenBytes& bytes, const Quanta& points) {
+  const std::uint64_t first = bytes.number(96, 4), step = bytes.number(105, 2);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (bytes.at<std::array<std::int32_t, 3>>(first + step * i) != points[i]) FAIL("point " << i);
+  }
 }
 
 }  // namespace
 
-TEST_CASE("LAS 1.2 header, field by field") {
+TEST_CASE("LAS 1.2 with point format 0, field by field") {
   const auto bytes = written(header_of(3), kPoints);
-  check_equal(bytes.text(0, 4), "LASF");
-  CHECK(bytes.zero(4, 20));
-  check_equal(bytes.at<std::uint8_t>(24), 1);
-  check_equal(bytes.at<std::uint8_t>(25), 2);
-  check_equal(bytes.text(26, 32), "OTHER");
-  check_equal(bytes.text(58, 32), "Clearway");
-  CHECK(bytes.zero(90, 4));
-  check_equal(bytes.at<std::uint16_t>(94), 227);
-  check_equal(bytes.at<std::uint32_t>(96), 227);
-  check_equal(bytes.at<std::uint32_t>(100), 0);
-  check_equal(bytes.at<std::uint8_t>(104), 0);
-  check_equal(bytes.at<std::uint16_t>(105), 20);
-  check_equal(bytes.at<std::uint32_t>(107), 3);
-  check_equal(bytes.at<std::uint32_t>(111), 3);
-  CHECK(bytes.zero(115, 16));
-  check_geometry(bytes);
-  check_equal(bytes.size(), declared_bytes(bytes));
-}
-
-TEST_CASE("LAS point format 0, field by field") {
-  const auto bytes = written(header_of(3), kPoints);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t at = 227 + 20 * i;
-    for (std::size_t k = 0; k < 3; ++k) CHECK(bytes.at<std::int32_t>(at + 4 * k) == kPoints[i][k]);
-    check_equal(bytes.at<std::uint16_t>(at + 12), 0);
-    CHECK(bytes.at<std::uint8_t>(at + 14) == 0b001001);
-    CHECK(bytes.zero(at + 15, 5));
-  }
+  check_fields(bytes,
+               "0:4=LASF 4:20= 24:1=1 25:1=2 26:32=OTHER 58:32=Clearway 90:4= 94:2=227 96:4=227 "
+               "100:4=0 104:1=0 105:2=20 107:4=3 111:4=3 115:16=");
+  check_whole(bytes);
+  check_points(bytes, kPoints);
+  for (const std::size_t at : {227, 247, 267}) check_fields(bytes, "12:2=0 14:1=9 15:5=", at);
 }
 
 TEST_CASE("LAS 1.4 with a CRS, field by field") {
   LasHeader header = header_of(3);
   header.crs_wkt = kWkt;
   const auto bytes = written(header, kPoints);
-  const auto wkt_bytes = static_cast<std::uint32_t>(kWkt.size() + 1);
-  check_equal(bytes.at<std::uint16_t>(6), 16);
-  check_equal(bytes.at<std::uint8_t>(25), 4);
-  check_equal(bytes.at<std::uint16_t>(94), 375);
-  CHECK(bytes.at<std::uint32_t>(96) == 375 + 54 + wkt_bytes);
-  check_equal(bytes.at<std::uint32_t>(100), 1);
-  check_equal(bytes.at<std::uint8_t>(104), 6);
-  check_equal(bytes.at<std::uint16_t>(105), 30);
-  CHECK(bytes.zero(107, 24));
-  check_geometry(bytes);
-  CHECK(bytes.zero(227, 20));
-  check_equal(bytes.at<std::uint64_t>(247), 3);
-  check_equal(bytes.at<std::uint64_t>(255), 3);
-  CHECK(bytes.zero(263, 112));
-  check_equal(bytes.text(377, 16), "LASF_Projection");
-  check_equal(bytes.at<std::uint16_t>(393), 2112);
-  CHECK(bytes.at<std::uint16_t>(395) == wkt_bytes);
-  CHECK(bytes.text(429, wkt_bytes) == kWkt);
-  CHECK(bytes.zero(429 + kWkt.size(), 1));
-  check_equal(bytes.size(), declared_bytes(bytes));
+  const std::string size = std::to_string(kWkt.size() + 1);
+  check_fields(bytes,
+               "6:2=16 25:1=4 94:2=375 100:4=1 104:1=6 105:2=30 107:24= 227:20= 247:8=3 255:8=3 "
+               "263:112= 377:16=LASF_Projection 393:2=2112 395:2=" +
+                   size);
+  check_equal(bytes.number(96, 4), 375 + 54 + kWkt.size() + 1);
+  CHECK(bytes.all().substr(429, kWkt.size() + 1) == kWkt + '\0');
+  check_whole(bytes);
 }
 
 TEST_CASE("LAS point format 6 with first poses, field by field") {
@@ -115,26 +104,14 @@ TEST_CASE("LAS point format 6 with first poses, field by field") {
   header.fields = {{"first_pose"}};
   const std::vector<std::uint32_t> poses{0, 4000000000u, 17};
   const auto bytes = written(header, kPoints, poses);
-  REQUIRE(bytes.at<std::uint32_t>(96) == 375 + 54 + 192);
-  check_equal(bytes.at<std::uint32_t>(100), 1);
-  check_equal(bytes.at<std::uint16_t>(105), 34);
-  check_equal(bytes.text(377, 16), "LASF_Spec");
-  check_equal(bytes.at<std::uint16_t>(393), 4);
-  check_equal(bytes.at<std::uint16_t>(395), 192);
-  CHECK(bytes.zero(429, 2));
-  check_equal(bytes.at<std::uint8_t>(431), 5);
-  check_equal(bytes.at<std::uint8_t>(432), 0);
-  check_equal(bytes.text(433, 32), "first_pose");
-  CHECK(bytes.zero(465, 124));
+  check_fields(bytes,
+               "96:4=621 100:4=1 105:2=34 377:16=LASF_Spec 393:2=4 395:2=192 429:2= 431:1=5 "
+               "432:1=0 433:32=first_pose 465:124=");
+  check_points(bytes, kPoints);
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t at = 621 + 34 * i;
-    for (std::size_t k = 0; k < 3; ++k) CHECK(bytes.at<std::int32_t>(at + 4 * k) == kPoints[i][k]);
-    check_equal(bytes.at<std::uint16_t>(at + 12), 0);
-    check_equal(bytes.at<std::uint8_t>(at + 14), 0x11);
-    CHECK(bytes.zero(at + 15, 15));
-    CHECK(bytes.at<std::uint32_t>(at + 30) == poses[i]);
+    check_fields(bytes, "12:2=0 14:1=17 15:15= 30:4=" + std::to_string(poses[i]), 621 + 34 * i);
   }
-  check_equal(bytes.size(), declared_bytes(bytes));
+  check_whole(bytes);
 }
 
 TEST_CASE("a CRS and first poses together declare both records") {
@@ -142,61 +119,47 @@ TEST_CASE("a CRS and first poses together declare both records") {
   header.fields = {{"first_pose"}};
   header.crs_wkt = kWkt;
   const auto bytes = written(header, {kPoints[1]}, {9});
-  check_equal(bytes.at<std::uint32_t>(100), 2);
-  const std::size_t second = 375 + 54 + kWkt.size() + 1;
-  check_equal(bytes.text(second + 2, 16), "LASF_Spec");
-  check_equal(bytes.size(), declared_bytes(bytes));
+  check_fields(bytes, "100:4=2");
+  check_fields(bytes, "2:16=LASF_Spec", 375 + 54 + kWkt.size() + 1);
+  check_whole(bytes);
 }
 
 TEST_CASE("a CRS too long for a variable length record goes behind the points") {
   LasHeader header = header_of(3);
   header.crs_wkt = std::string(65535, 'w');
   const auto bytes = written(header, kPoints);
-  check_equal(bytes.at<std::uint32_t>(100), 0);
-  check_equal(bytes.at<std::uint32_t>(243), 1);
-  const auto start = bytes.at<std::uint64_t>(235);
-  REQUIRE(start == declared_bytes(bytes));
-  check_equal(bytes.text(start + 2, 16), "LASF_Projection");
-  check_equal(bytes.at<std::uint16_t>(start + 18), 2112);
-  check_equal(bytes.at<std::uint64_t>(start + 20), 65536);
-  CHECK(bytes.text(start + 60, 65536) == header.crs_wkt);
-  check_equal(bytes.size(), start + 60 + 65536);
+  const std::size_t start = bytes.number(235, 8);
+  check_fields(bytes, "100:4=0 243:4=1");
+  check_fields(bytes, "2:16=LASF_Projection 18:2=2112 20:8=65536", start);
+  CHECK(bytes.all().substr(start + 60) == header.crs_wkt + '\0');
+  check_whole(bytes, 60 + 65536);
   header.crs_wkt.pop_back();
-  check_equal(written(header, kPoints).at<std::uint32_t>(100), 1);
+  check_fields(written(header, kPoints), "100:4=1");
 }
 
 TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
-  LasHeader header = header_of(0x100000000);
-  const File file = test::nameless_file();
-  LasWriter writer(file, header);
+  const File file = nameless_file();
+  LasWriter writer(file, header_of(0x100000000));
   writer.write(Quanta(60000, {1, 2, 3}));  // more than the buffer: the header is written
-  const test::WrittenBytes bytes(file);
-  check_equal(bytes.at<std::uint8_t>(25), 4);
-  check_equal(bytes.at<std::uint32_t>(107), 0);
-  check_equal(bytes.at<std::uint64_t>(247), 0x100000000);
-  check_equal(written(header_of(0), {}).at<std::uint8_t>(25), 2);
+  check_fields(WrittenBytes(file), "25:1=4 107:4=0 247:8=4294967296");
 }
 
 TEST_CASE("many points through the buffer arrive in order") {
   Quanta points;
   for (std::int32_t i = 0; i < 200000; ++i) points.push_back({i, -i, 2 * i});
   const auto bytes = written(header_of(points.size()), points);
-  REQUIRE(bytes.size() == declared_bytes(bytes));
-  bool equal = true;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    equal = equal && bytes.at<std::array<std::int32_t, 3>>(227 + 20 * i) == points[i];
-  }
-  CHECK(equal);
+  check_whole(bytes);
+  check_points(bytes, points);
 }
 
 TEST_CASE("LAS without points has zero bounds") {
   const auto bytes = written(header_of(0), {});
   check_equal(bytes.size(), 227);
-  CHECK(bytes.zero(179, 48));
+  check_fields(bytes, "25:1=2 179:48=");
 }
 
 TEST_CASE("another number of LAS points than promised is a programmer's mistake") {
-  const File file = test::nameless_file();
+  const File file = nameless_file();
   LasWriter writer(file, header_of(2));
   writer.write(Quanta{kPoints[0]});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "io/scans/text/point_blocks.hpp"
-#include "support/bytes/pcd_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
@@ -50,7 +49,6 @@ TEST_CASE("lines end with LF, CR LF or CR, also at the borders of blocks and buf
   const ScratchFolder scratch;
   std::mt19937 random(7);
   constexpr std::size_t kBlock = LineBlocks::kBlockBytes, kLongest = InputBuffer::kLongestLine;
-  const std::size_t most_of_line[] = {3, 100, kLongest};
   std::vector<std::string> texts{"", "a", "a\n", "\n", std::string(kBlock, '\n')};
   // The line break stands right before, at, and right behind the end of a block.
   for (std::size_t extra : {0, 1, 2}) {
@@ -59,7 +57,7 @@ TEST_CASE("lines end with LF, CR LF or CR, also at the borders of blocks and buf
     text += std::string(kBlock - 2 - text.size() + extra, 'y') + "\n";
     texts.push_back(text + "z\nw");
   }
-  for (const std::size_t most : most_of_line) {
+  for (const std::size_t most : {std::size_t{3}, std::size_t{100}, kLongest}) {
     std::string text;
     while (text.size() < 5 * kBlock) {
       text += std::string(random() % (most + 1), static_cast<char>('a' + random() % 26)) + "\n";
@@ -163,25 +161,23 @@ TEST_CASE("a long text has its points in the order of its lines") {
 
 TEST_CASE("a line in the middle of a long text is refused by its number") {
   const ScratchFolder scratch;
-  const std::string damaged = "#\n" + rows(0, 70'000) + "1 2 x\n" + rows(0, 20'000);
-  check_says(refusal_of(scratch.write("a.xyz", damaged)), "line 70002: \"1 2 x\"");
-  check_says(
-      refusal_of(scratch.write("a.ply", ply(rows(0, 70'000) + "1 2\n" + rows(0, 9), 80'000))),
-      "line 70008: expected a number for property");
-  check_says(refusal_of(scratch.write("a.ply", ply(rows(0, 70'000), 70'001))),
-             "ends after line 70007 with 70000 of element");
-  check_says(refusal_of(scratch.write("a.ply", ply(rows(0, 70'001), 70'000))),
-             "is more than the header declares");
-  check_says(refusal_of(scratch.write("a.pts", "69999\n" + rows(0, 70'000))),
-             "line 70001: more than the 69999 points that line 1 declares");
-  check_says(refusal_of(scratch.write("a.pts", "70001\n" + rows(0, 70'000))),
-             "ends after line 70001 with 70000 points; expected 70001");
-  check_says(refusal_of(scratch.write("a.xyz", rows(0, 30'000, "\r") + rows(0, 30'000, "\r\n") +
-                                                   rows(0, 10'000) + "1 2 x\r" + rows(0, 9))),
-             "line 70001: \"1 2 x\"");
-  const std::string long_line = rows(0, 70'000) + "1 2 3 " + std::string(70'000, '4') + "\n";
-  check_says(refusal_of(scratch.write("a.xyz", long_line)),
-             "line 70001: is longer than 65536 bytes");
+  const std::string many = rows(0, 70'000);
+  const std::array<std::string, 3> files[] = {
+      {"a.xyz", "#\n" + many + "1 2 x\n" + rows(0, 20'000), "line 70002: \"1 2 x\""},
+      {"a.ply", ply(many + "1 2\n" + rows(0, 9), 80'000),
+       "line 70008: expected a number for property"},
+      {"a.ply", ply(many, 70'001), "ends after line 70007 with 70000 of element"},
+      {"a.ply", ply(rows(0, 70'001), 70'000), "is more than the header declares"},
+      {"a.pts", "69999\n" + many, "line 70001: more than the 69999 points that line 1 declares"},
+      {"a.pts", "70001\n" + many, "ends after line 70001 with 70000 points; expected 70001"},
+      {"a.xyz",
+       rows(0, 30'000, "\r") + rows(0, 30'000, "\r\n") + rows(0, 10'000) + "1 2 x\r" + rows(0, 9),
+       "line 70001: \"1 2 x\""},
+      {"a.xyz", many + "1 2 3 " + std::string(70'000, '4') + "\n",
+       "line 70001: is longer than 65536 bytes"}};
+  for (const auto& [name, text, words] : files) {
+    check_says(refusal_of(scratch.write(name, text)), words);
+  }
 }
 
 TEST_CASE("a long text that may be cut is warned of by the number of its last line") {
@@ -191,27 +187,4 @@ TEST_CASE("a long text that may be cut is warned of by the number of its last li
   REQUIRE(reader->info().remarks.size() == 1);
   check_equal(reader->info().remarks[0].code, "cut-text");
   check_equal(reader->info().remarks[0].numbers.at(0).second, 70'001);
-}
-
-// The lines that messages name for points, in every text format.
-
-TEST_CASE("the lines of points in a text are told") {
-  ScratchFolder scratch;
-  const auto lines = [&](const char* name, const std::string& text,
-                         std::vector<std::uint64_t> points) {
-    return open_point_file(scratch.write(name, text))->lines_of(points);
-  };
-  using Lines = std::vector<std::uint64_t>;
-  CHECK(lines("a.pts", "2\n1 2 3\n\n4 5 6\n1\n7 8 9\n", {0, 1, 2}) == Lines{2, 4, 6});
-  const std::string axes = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
-  CHECK(lines("a.ptx", "1\n2\n" + axes + "1 2 3\n0 0 0\n1\n1\n" + axes + "7 8 9\n", {0, 2}) ==
-        Lines{11, 23});
-  CHECK(lines("a.3d", "3 points\n1 2 3\n4 5 6\n# any\n7 8 9\n", {1, 2}) == Lines{3, 5});
-  PcdHeaderText pcd;
-  CHECK(lines("a.pcd", pcd.build("ascii") + "1 2 3\n\n4 5 6\n", {1}) ==
-        Lines{static_cast<std::uint64_t>(std::ranges::count(pcd.build("ascii"), '\n')) + 3});
-  const auto reader =
-      open_point_file(scratch.write("a.csv", "# any\nx,y,z\n1,2,3\n\n4,5,6\n# any\n7,8,9\n"));
-  check_equal(reader->lines_of(std::vector<std::uint64_t>{0, 2}), {3, 7});
-  check_equal(reader->lines_of(std::vector<std::uint64_t>{1}), {5});
 }
