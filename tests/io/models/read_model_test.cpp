@@ -8,41 +8,24 @@
 #include "support/bytes/mesh_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/reader_fixture.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
-namespace {
-
-std::string refusal_of_model(const std::filesystem::path& path) {
-  try {
-    read_model_points(path);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
-
-}  // namespace
-
-TEST_CASE("a model of integers is placed by scale and offset") {
-  ScratchFolder scratch;
-  const auto points = read_model_points(scratch.write("a.las", LasBytes().build()));
-  REQUIRE(points.size() == 3);
-  CHECK(points[0] == Vec3{1 * 0.001 + 100, 2 * 0.01 - 200, 3 * 0.1});
+TEST_CASE("a model of points is read, with integers placed by scale and offset") {
+  const ScratchFolder scratch;
+  CHECK(read_model_points(scratch.write("a.las", LasBytes().build()))[0] ==
+        Vec3{1 * 0.001 + 100, 2 * 0.01 - 200, 3 * 0.1});
   check_equal(read_model_points(scratch.write("a.xyz", "1 2 3\n")), {{1, 2, 3}});
-}
-
-TEST_CASE("a model without points or with a point that is not finite is refused") {
-  ScratchFolder scratch;
-  check_says(refusal_of_model(scratch.write("a.xyz", "# none\n")), "no points");
-  check_says(refusal_of_model(scratch.write("a.xyz", "1 2 3\n1 nan 3\n")),
-             "model point 1 ... finite");
+  check_refused<InputError>([&] { read_model_points(scratch.write("a.xyz", "# none\n")); },
+                            "no points");
+  check_refused<InputError>([&] { read_model_points(scratch.write("a.xyz", "1 2 3\n1 nan 3\n")); },
+                            "model point 1 ... finite");
 }
 
 TEST_CASE("a unit that the file or the caller names is converted into the environment's") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   LasBytes las;
   las.vlrs = {{"LASF_Projection", 2112, "LOCAL_CS[\"feet\",UNIT[\"foot\",0.3048]]"}};
   const auto feet = scratch.write("a.las", las.build());
@@ -58,101 +41,90 @@ TEST_CASE("a unit that the file or the caller names is converted into the enviro
   const auto unknown = scratch.write("a.xyz", "914.4 2 3\n");
   check_equal(read_model_points(unknown, {.environment_unit = 0.3048})[0].x, 914.4);
   check_equal(read_model_points(unknown, {.unit = 0.001})[0].x, 0.9144);
-  CHECK(read_model_points(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x == Approx(3));
+  check_near(read_model_points(unknown, {.unit = 0.001, .environment_unit = 0.3048})[0].x, 3, 1e-9);
   CHECK_THROWS_AS(read_model_points(unknown, {.unit = -1}), UsageError);
   CHECK_THROWS_AS(read_model_points(unknown, {.environment_unit = 0}), UsageError);
 }
 
-namespace {
-
-constexpr const char* kPlate = "OFF\n4 2 0\n0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n";
-
-}  // namespace
-
 TEST_CASE("a mesh is its surface unless points are asked for, and then has a spacing") {
-  ScratchFolder scratch;
-  const auto plate = scratch.write("plate.off", kPlate);
+  const ScratchFolder scratch;
+  const auto plate =
+      scratch.write("plate.off", "OFF\n4 2 0\n0 0 0\n4 0 0\n4 3 0\n0 3 0\n3 0 1 2\n3 0 2 3\n");
   check_equal(read_model(plate).triangles.size(), 2);
   check_equal(read_model(plate, {.radius = 0.1}).triangles.size(), 2);
   check_equal(read_model(plate).spacing, 0);
-  const auto spacing_of = [&](const ModelOptions& options) {
+  const std::pair<ModelOptions, double> rows[] = {
+      {{.as = ModelAs::kPoints, .radius = 0.1}, 0.025},
+      {{.as = ModelAs::kPoints, .spacing = 0.5, .radius = 0.1}, 0.5},
+      {{.spacing = 0.5}, 0.5},
+      {{.vertices_only = true}, 2.5}};  // the middle of the diagonal
+  for (const auto& [options, spacing] : rows) {
     const Model shape = read_model(plate, options);
     CHECK(shape.triangles.empty());
-    return shape.spacing;
-  };
-  check_equal(spacing_of({.as = ModelAs::kPoints, .radius = 0.1}), 0.025);
-  check_equal(spacing_of({.as = ModelAs::kPoints, .spacing = 0.5, .radius = 0.1}), 0.5);
-  check_equal(spacing_of({.spacing = 0.5}), 0.5);
-  CHECK(spacing_of({.vertices_only = true}) == Approx(2.5));  // the middle of the diagonal
+    check_near(shape.spacing, spacing, 1e-12);
+  }
   CHECK_THROWS_AS(read_model(plate, {.as = ModelAs::kPoints}), InputError);
   for (const ModelAs as : {ModelAs::kSurface, ModelAs::kSolid}) {
     CHECK_THROWS_AS(read_model(plate, {.as = as, .spacing = 0.5}), UsageError);
     CHECK_THROWS_AS(read_model(plate, {.as = as, .vertices_only = true}), UsageError);
   }
-  const auto cloud = scratch.write("a.xyz", "1 2 3\n");
-  check_equal(read_model(cloud, {.spacing = 0.5}).spacing, 0);
+  check_equal(read_model(scratch.write("a.xyz", "1 2 3\n"), {.spacing = 0.5}).spacing, 0);
   Query query;
   query.model = read_model(plate, {.spacing = 0.5});
-  check_equal(query.model.spacing, 0.5);
   query.bodies.resize(1);
   query.bodies[0].model = read_model(plate, {.spacing = 0.75});
   check_equal(model_spacing(query), 0.75);
 }
 
 TEST_CASE("samples of a mesh keep their spacing") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   const auto file = scratch.write("samples.ply",
                                   "ply\nformat ascii 1.0\ncomment clearway model spacing 0.5\n"
                                   "element vertex 1\nproperty double x\nproperty double y\n"
                                   "property double z\nend_header\n1 2 3\n");
   check_equal(read_model(file).spacing, 0.5);
-  CHECK(read_model(file, {.unit = 0.001}).spacing == Approx(0.0005));
+  check_near(read_model(file, {.unit = 0.001}).spacing, 0.0005, 1e-15);
 }
 
 TEST_CASE("lines and single points of a mesh are part of every kind of model") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   const std::string mast = "v 0 0 0\nv 4 0 0\nv 4 3 0\nv 1 1 0\nv 1 1 5\nv 2 2 2\n";
-  const auto file = scratch.write("mast.obj", mast + "f 1 2 3\nl 4 5\np 6\n");
   std::vector<Message> told;
+  const auto file = scratch.write("mast.obj", mast + "f 1 2 3\nl 4 5\np 6\n");
   const Model surface = read_model(file, {}, &told);
   check_equal(surface.triangles.size(), 3);
   check_equal(surface.vertices.size(), 6);
   REQUIRE(told.size() == 2);
   check_says(told[0].text, "1 triangle, 1 line segment and 1 single point");
   check_says(told[1].text, "searched as a surface, which has no inside, because it is not closed");
-  const auto reaches = [](const Model& shape, const Vec3& place, double within) {
-    return std::ranges::any_of(shape.vertices, [&](const Vec3& p) {
-      return std::hypot(p.x - place.x, p.y - place.y, p.z - place.z) <= within;
-    });
-  };
   const Model points = read_model(file, {.spacing = 0.25});
   for (const Vec3& place : {Vec3{1, 1, 5}, Vec3{1, 1, 3.3}, Vec3{2, 2, 2}}) {
-    CHECK(reaches(points, place, 0.25));
+    CHECK(std::ranges::any_of(points.vertices, [&](const Vec3& p) {
+      return std::hypot(p.x - place.x, p.y - place.y, p.z - place.z) <= 0.25;
+    }));
   }
   check_equal(read_model(file, {.vertices_only = true}).vertices.size(), 6);
-  CHECK(read_model(file, {.vertices_only = true}).spacing == Approx(2.5));
-  const auto lines = scratch.write("lines.obj", mast + "l 4 5 6\n");
+  check_near(read_model(file, {.vertices_only = true}).spacing, 2.5, 1e-12);
+
   told.clear();
-  check_equal(read_model(lines, {}, &told).triangles.size(), 2);
+  check_equal(
+      read_model(scratch.write("lines.obj", mast + "l 4 5 6\n"), {}, &told).triangles.size(), 2);
   REQUIRE(told.size() == 3);
   check_equal(told[1].code, "loose-vertices");
   CHECK(told[1].severity == Message::Severity::kWarning);
   check_says(told[1].text, "3 vertices belong to no face, line or point");
   check_equal(told[1].numbers.at(0).second, 3);
-  const auto dots = scratch.write("dots.obj", mast + "p 1 2 6\n");
   told.clear();
+  const auto dots = scratch.write("dots.obj", mast + "p 1 2 6\n");
   check_equal(read_model(dots, {}, &told).vertices, {{0, 0, 0}, {4, 0, 0}, {2, 2, 2}});
   check_equal(told.at(0).code, "loose-vertices");
   check_equal(read_model(dots, {.vertices_only = true}).vertices.size(), 6);
 }
 
 TEST_CASE("a mast beside a closed part leaves it solid") {
-  ScratchFolder scratch;
-  const TriangleMesh cube = unit_cube();
-  const auto file = scratch.write("cube.obj", obj_text(cube) + "v 1 1 4\nl 7 9\np 9\n");
+  const ScratchFolder scratch;
+  const auto file = scratch.write("cube.obj", obj_text(unit_cube()) + "v 1 1 4\nl 7 9\np 9\n");
   const Model solid = read_model(file, {.as = ModelAs::kSolid});
   REQUIRE(solid.solid_of.size() == 14);
-  for (std::size_t i = 0; i < 12; ++i) check_equal(solid.solid_of[i], 0);
-  CHECK(solid.solid_of[12] == kNoSolid);
-  CHECK(solid.solid_of[13] == kNoSolid);
+  for (std::size_t i = 0; i < 14; ++i) CHECK(solid.solid_of[i] == (i < 12 ? 0 : kNoSolid));
 }

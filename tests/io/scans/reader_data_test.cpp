@@ -53,7 +53,7 @@ TEST_CASE("every file loads with its header's count, unit, first and last point"
       "1694291.636332656 1816493.066230585 5597.089652538",
       "simple_text.ply 3 unknown -1 0 0 1 0 0",
       "text_extradim.ply 1 unknown -2.64944 -13.0955 0.00640115 -2.64944 -13.0955 0.00640115",
-      "autzen.pts 10 unknown 636110.300003 849345.050003 512.139999 636125.859990 848971.070013 "
+      "autzen.pts 10 unknown 636110.300003 849345.050003 512.139999 636125.87999 848971.060013 "
       "428.050003",
       "simple_binary.ply 3 unknown -1 0 0 1 0 0",
       "bunnyDouble.e57 30571 metre -0.07063 0.04015 0.001226 -0.037829 0.12794 0.004474",

@@ -31,8 +31,7 @@ Integers values_of(unsigned width, std::int64_t minimum, std::size_t count) {
 }
 
 std::int64_t maximum_of(unsigned width, std::int64_t minimum) {
-  const std::uint64_t mask = width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
-  return static_cast<std::int64_t>(static_cast<std::uint64_t>(minimum) + mask);
+  return values_of(width, minimum, 2)[1];
 }
 
 /// Packets that hold a random number of bytes, 0 to 12, of each bytestream.
@@ -146,56 +145,42 @@ TEST_CASE("fields that tell no place are stepped over: extensions, texts, struct
 }
 
 TEST_CASE("numbers that are not finite come as they are, and are not absent") {
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   E57Bytes file;
   const double infinity = std::numeric_limits<double>::infinity();
   file.scans.push_back(e57_scan({std::nan(""), 1}, {2, -infinity}, {0, 0}));
-  const auto reader = open_point_file(scratch.write("a.e57", file.build()));
-  PointBatch batch;
-  REQUIRE(reader->read(batch));
-  REQUIRE(batch.positions.size() == 2);
-  CHECK(std::isnan(batch.positions[0].x));
-  CHECK(batch.positions[1].y == -infinity);
-  CHECK(batch.absent.empty());
+  const ReadCloud cloud = read(scratch, file);
+  REQUIRE(cloud.positions.size() == 2);
+  CHECK(std::isnan(cloud.positions[0].x));
+  CHECK(cloud.positions[1].y == -infinity);
+  CHECK(cloud.absent.empty());
 }
 
 TEST_CASE("zeros up to the next word of 64 bits behind the last record are padding") {
-  ScratchFolder scratch;
   E57Bytes file;
-  file.scans.emplace_back();
-  file.scans[0].fields = {E57Bytes::integer("cartesianX", 0, 3, {1, 2, 3}),
-                          E57Bytes::float64("cartesianY", {0, 0, 0}),
-                          E57Bytes::float64("cartesianZ", {0, 0, 0})};
-  file.scans[0].padding = std::string(7, '\0');
-  check_equal(read(scratch, file).positions.size(), 3);
-  file.scans[0].padding = std::string("\0\0\0\0\0\0\x40", 7);
-  CHECK_THROWS_AS(read(scratch, file), InputError);
-  file.scans[0].padding = std::string(8, '\0');
-  CHECK_THROWS_AS(read(scratch, file), InputError);
+  file.scans.push_back(e57_scan({0, 0, 0}, {0, 0, 0}, {0, 0, 0}));
+  file.scans[0].fields[0] = E57Bytes::integer("cartesianX", 0, 3, {1, 2, 3});
+  for (const auto& [padding, is_read] : {std::pair(std::string(7, '\0'), true),
+                                         {std::string("\0\0\0\0\0\0\x40", 7), false},
+                                         {std::string(8, '\0'), false}}) {
+    file.scans[0].padding = padding;
+    CHECK(refusal_of_file("a.e57", file.build()).empty() == is_read);
+  }
 }
 
-TEST_CASE("CRC-32C gives the values of RFC 3720, by table and by instruction") {
-  std::string ascending, descending;
-  for (char c = 0; c < 32; ++c) {
-    ascending += c;
-    descending = c + descending;
-  }
+TEST_CASE("CRC-32C is that of RFC 3720, by table and by instruction at every length and place") {
+  std::string ascending, text;
+  for (char c = 0; c < 32; ++c) ascending += c;
   const std::pair<std::string, std::uint32_t> known[] = {{"123456789", 0xE3069283},
                                                          {std::string(32, '\0'), 0x8A9136AA},
                                                          {std::string(32, '\xFF'), 0x62A8AB43},
                                                          {ascending, 0x46DD794E},
-                                                         {descending, 0x113FDB5C},
                                                          {"", 0}};
-  for (const auto& [text, sum] : known) {
-    CHECK(crc32c(std::as_bytes(std::span(text))) == sum);
-    CHECK(crc32c_by_table(std::as_bytes(std::span(text))) == sum);
-    CHECK(E57Bytes::checksum(text.data(), text.size()) == sum);
+  for (const auto& [bytes, sum] : known) {
+    CHECK(crc32c(std::as_bytes(std::span(bytes))) == sum);
+    CHECK(crc32c_by_table(std::as_bytes(std::span(bytes))) == sum);
+    CHECK(E57Bytes::checksum(bytes.data(), bytes.size()) == sum);
   }
-}
-
-TEST_CASE(
-    "CRC-32C is the same byte by byte, by table and by instruction at every length and place") {
-  std::string text;
   for (std::uint32_t i = 0; i < 80; ++i) text += static_cast<char>(i * 0x9E3779B1U >> 24);
   for (std::size_t start = 0; start < 8; ++start) {
     for (std::size_t count = 0; start + count <= text.size(); ++count) {

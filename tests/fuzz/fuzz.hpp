@@ -3,7 +3,9 @@
 #include <unistd.h>
 
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 
@@ -12,13 +14,23 @@
 
 namespace clearway::test {
 
+using Bytes = std::span<const std::uint8_t>;
+
+/// What fuzz_NAME does with any bytes.
+using Targets = std::map<std::string, void (*)(Bytes)>;
+extern const Targets kScanTargets, kTextTargets, kStoreTargets;
+
+inline void require(bool condition) {
+  if (!condition) std::abort();
+}
+
 /// A file of given bytes, in memory where the system has a folder for that. Only one may exist at a
 /// time.
 class MemoryFile {
  public:
-  explicit MemoryFile(std::span<const std::uint8_t> bytes) {
-    File::create(path_).write(std::as_bytes(bytes));
-  }
+  explicit MemoryFile(Bytes bytes) { File::create(path_).write(std::as_bytes(bytes)); }
+  explicit MemoryFile(const std::string& bytes)
+      : MemoryFile({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}) {}
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
   ~MemoryFile() { ::unlink(path_.c_str()); }
@@ -45,5 +57,7 @@ void may_refuse(Read read) {
   } catch (const Error&) {
   }
 }
+
+inline std::string text_of(Bytes bytes) { return {bytes.begin(), bytes.end()}; }
 
 }  // namespace clearway::test

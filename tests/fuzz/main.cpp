@@ -1,0 +1,24 @@
+// The fuzz targets: one program with a name for each of them.
+#include "fuzz.hpp"
+
+using namespace clearway::test;
+
+namespace {
+
+void (*target)(Bytes) = nullptr;
+
+}  // namespace
+
+extern "C" int LLVMFuzzerInitialize(int*, char*** argv) {
+  const std::string name = std::filesystem::path((*argv)[0]).filename().string().substr(5);
+  for (const Targets* targets : {&kScanTargets, &kTextTargets, &kStoreTargets}) {
+    if (targets->contains(name)) target = targets->at(name);
+  }
+  require(target != nullptr);
+  return 0;
+}
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  target({data, size});
+  return 0;
+}

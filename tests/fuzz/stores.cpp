@@ -1,0 +1,421 @@
+// Any bytes as a store, a result, a journal, or a packed chunk; and a sound store with other
+// values.
+#include <hdf5.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <optional>
+
+#include "core/page/page.hpp"
+#include "fuzz.hpp"
+#include "io/files/hdf5.hpp"
+#include "io/files/xxh64.hpp"
+#include "io/result/check_results.hpp"
+#include "io/result/journal.hpp"
+#include "io/result/result.hpp"
+#include "io/store/store_reader.hpp"
+#include "io/store/verify_store.hpp"
+#include "stream/plan.hpp"
+#include "stream/run_pages.hpp"
+#include "stream/search_journal.hpp"
+#include "support/clouds.hpp"
+#include "support/engines/answer_sets.hpp"
+#include "support/memory_cloud.hpp"
+
+using namespace clearway;
+using namespace clearway::test;
+
+namespace {
+
+using AxisValues = std::array<std::vector<std::int32_t>, 3>;
+
+/// Stages a page of one cell, in memory of exactly its size, and requires these values in it.
+void check_staged_cell(const PackedCloud& cloud, std::uint32_t cell, const AxisValues& values) {
+  const std::array<PlannedCell, 1> planned{PlannedCell{cell, {0}}};
+  const std::uint64_t bytes = page_shape(cloud, planned).bytes();
+  constexpr std::align_val_t kAlignment{kPageAlignment};
+  const auto free = [=](std::byte* page) { ::operator delete[](page, kAlignment); };
+  const std::unique_ptr<std::byte[], decltype(free)> page(
+      static_cast<std::byte*>(::operator new[](bytes, kAlignment)), free);
+  const PageRef staged{page.get(), stage_page(cloud, planned, {page.get(), bytes})};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::uint32_t i = 0; i < cloud.cell_points(); ++i) {
+      require(staged.value(staged.cell(0).chunks[axis], i) == values[axis][i]);
+    }
+  }
+}
+
+/// Opens a store and reads everything in it, as `verify`, `run` and the search of cells do.
+void read_store(const std::filesystem::path& path) {
+  const StoreReader store(path);
+  NoProgress progress;
+  verify_store(store, progress);
+  store.fingerprint();
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    may_refuse([&] {
+      const auto chunks = store.coordinates(cell);
+      AxisValues values;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        values[axis].resize(store.cell_points());
+        chunks[axis].decode(0, values[axis]);
+      }
+      check_staged_cell(store, cell, values);
+    });
+  }
+}
+
+void read_store_bytes(Bytes bytes) {
+  const MemoryFile file(bytes);
+  may_refuse([&] { read_store(file.path()); });
+}
+
+void read_result_bytes(Bytes bytes) {
+  const MemoryFile file(bytes);
+  may_refuse([&] {
+    NoProgress progress;
+    verify_result(ResultReader(file.path()), progress);
+  });
+}
+
+/// A cloud of one cell whose x, y and z are the same packed bytes.
+class OneCellCloud final : public PackedCloud {
+ public:
+  using Chunk = PackedChunk<std::int32_t>;
+
+  OneCellCloud(std::span<const std::byte> chunk, std::uint32_t count)
+      : chunk_(chunk), cell_{count, {}}, blocks_(divide_up(count, kBlockPoints)) {}
+
+  std::uint64_t point_count() const override { return cell_.count; }
+  std::uint32_t cell_points() const override { return cell_.count; }
+  const Quantisation& quantisation() const override { return quantisation_; }
+  std::span<const Cell> cells() const override { return {&cell_, 1}; }
+  std::span<const TreeNode> tree() const override { return {&node_, 1}; }
+  std::span<const BlockBox> blocks() const override { return blocks_; }
+  std::array<Chunk, 3> coordinates(std::uint32_t) const override {
+    const Chunk chunk(chunk_, cell_.count);
+    return {chunk, chunk, chunk};
+  }
+  std::uint64_t packed_bytes(std::uint32_t) const override { return 3 * chunk_.size(); }
+  std::array<Chunk, 3> read_packed(std::uint32_t, std::span<std::byte> to) const override {
+    std::array<Chunk, 3> chunks;
+    for (Chunk& chunk : chunks) {
+      std::copy(chunk_.begin(), chunk_.end(), to.begin());
+      chunk = Chunk(to.first(chunk_.size()), cell_.count);
+      to = to.subspan(chunk_.size());
+    }
+    return chunks;
+  }
+  std::uint64_t source_of(std::uint32_t, std::uint32_t index) const override { return index; }
+
+ private:
+  std::span<const std::byte> chunk_;
+  Cell cell_;
+  TreeNode node_{0, 1, 0, {}};
+  Quantisation quantisation_{{1, 1, 1}, {0, 0, 0}};
+  std::vector<BlockBox> blocks_;
+};
+
+template <typename Value>
+std::vector<Value> check_decoding(std::span<const std::byte> bytes, std::uint32_t count) {
+  const PackedChunk<Value> chunk(bytes, count);
+  const auto again =
+      PackedChunk<Value>::of_payload(chunk.payload(), count, chunk.minbits(), chunk.minimum());
+  std::vector<Value> values(count), from_third(count);
+  chunk.decode(0, values);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    require(chunk[i] == values[i] && again[i] == values[i]);
+  }
+  if (count > 3) {
+    chunk.decode(3, std::span(from_third).subspan(3));
+    require(std::equal(values.begin() + 3, values.end(), from_third.begin() + 3));
+  }
+  return values;
+}
+
+/// A packed chunk: either it is refused, or every way to decode it gives the same values. The first
+/// two bytes are the number of values.
+void read_chunk_bytes(Bytes input) {
+  if (input.size() < 2) return;
+  const std::uint32_t count = 1 + input[0] + 256u * (input[1] % 8);
+  // The bytes lie in a block of exactly their size, so that a read past its end is seen.
+  const std::size_t size = input.size() - 2;
+  const auto copy = std::make_unique<std::byte[]>(size);
+  std::memcpy(copy.get(), input.data() + 2, size);
+  const std::span<const std::byte> bytes(copy.get(), size);
+  may_refuse([&] { check_decoding<std::uint64_t>(bytes, count); });
+  may_refuse([&] {
+    const auto values = check_decoding<std::int32_t>(bytes, count);
+    check_staged_cell(OneCellCloud(bytes, count), 0, {values, values, values});
+  });
+}
+
+/// A change of a store: the thing with this number, where in it, and the value put there.
+struct Edit {
+  static constexpr std::size_t kBytes = 11;
+  unsigned what;
+  std::uint16_t where = 0;
+  std::uint64_t value = 0;
+
+  explicit Edit(Bytes bytes) : what(bytes[0] % (kThings + 1)) {
+    std::memcpy(&where, &bytes[1], 2);
+    std::memcpy(&value, &bytes[3], 8);
+  }
+  static constexpr const char* kDatasets[] = {"cells/count", "cells/box",     "cells/address",
+                                              "cells/bytes", "cells/xxh64",   "blocks/box",
+                                              "tree/nodes",  "sources/names", "sources/bytes"};
+  static constexpr const char* kAttributes[] = {"point_count", "input_points", "cell_points",
+                                                "points_hash", "scale",        "offset",
+                                                "length_unit", "layout",       "steps"};
+  /// Values of datasets, their extents, and attributes; one more stands for the packed chunks.
+  static constexpr unsigned kThings = 2 * std::size(kDatasets) + std::size(kAttributes);
+
+  bool is_of_chunk() const { return what == kThings; }
+};
+
+struct Dataset {
+  hdf5::Id id, type, space;
+
+  Dataset(hid_t file, const char* name)
+      : id(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name),
+        type(H5Dget_type(id.get()), H5Tclose, name),
+        space(H5Dget_space(id.get()), H5Sclose, name) {}
+
+  /// The values; empty where they are too large to be read.
+  std::vector<std::byte> values() const {
+    constexpr hssize_t kMost = 1 << 16;
+    const hssize_t count = H5Sget_simple_extent_npoints(space.get());
+    std::vector<std::byte> values(count > kMost || count < 0 ? 0 : count * H5Tget_size(type.get()));
+    if (values.empty()) return values;
+    hdf5::check(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "");
+    return values;
+  }
+  void write(const void* values) const {
+    hdf5::check(H5Dwrite(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "");
+  }
+};
+
+void edit_dataset(hid_t file, const char* name, const Edit& edit) {
+  const Dataset dataset(file, name);
+  std::vector<std::byte> values = dataset.values();
+  if (values.empty()) return;
+  const std::size_t size = H5Tget_size(dataset.type.get());
+  std::memcpy(values.data() + edit.where % (values.size() / size) * size, &edit.value, size);
+  dataset.write(values.data());
+}
+
+/// Replaces a dataset by one of another extent in which nothing is written.
+void resize_dataset(hid_t file, const char* name, const Edit& edit) {
+  const Dataset dataset(file, name);
+  const hdf5::Id list(H5Dget_create_plist(dataset.id.get()), H5Pclose, name);
+  hsize_t extent[2]{};
+  const int rank = H5Sget_simple_extent_dims(dataset.space.get(), extent, nullptr);
+  extent[edit.where % static_cast<unsigned>(rank)] = edit.value >> edit.where % 64;
+  const hid_t other = H5Screate_simple(rank, extent, nullptr);
+  if (other < 0) return;
+  const hdf5::Id other_space(other, H5Sclose, name);
+  hdf5::check(H5Ldelete(file, name, H5P_DEFAULT), name);
+  const hid_t created =
+      H5Dcreate2(file, name, dataset.type.get(), other, H5P_DEFAULT, list.get(), H5P_DEFAULT);
+  if (created >= 0) H5Dclose(created);
+}
+
+void edit_attribute(hid_t file, const char* name, const Edit& edit) {
+  const hdf5::Id attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, name);
+  const hdf5::Id type(H5Aget_type(attribute.get()), H5Tclose, name);
+  std::vector<std::byte> value(H5Aget_storage_size(attribute.get()));
+  hdf5::check(H5Aread(attribute.get(), type.get(), value.data()), name);
+  const std::size_t step = std::min<std::size_t>(8, value.size());
+  std::memcpy(value.data() + edit.where % (value.size() / step) * step, &edit.value, step);
+  hdf5::check(H5Awrite(attribute.get(), type.get(), value.data()), name);
+}
+
+/// A sound store with cells of 64 points, the last of 44.
+struct SoundStore {
+  SoundStore() {
+    // HDF5 is to keep the memory that it frees: it would give back a file's tables, which have
+    // 600 KiB, each time.
+    H5set_free_list_limits(-1, -1, -1, -1, -1, -1);
+    const ScratchFolder folder;
+    write_las(folder / "a.las", cube_cloud(300, -4000, 4000, 3));
+    convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
+    bytes = bytes_of(folder / "a.h5");
+    index = StoreReader(folder / "a.h5").index();
+  }
+
+  std::string bytes;
+  CellIndex index;
+};
+
+/// Sets the hashes of packed chunks to those of `bytes`.
+void rehash_chunks(hid_t file, std::string_view bytes, const CellIndex& index) {
+  std::vector<std::uint64_t> hashes = index.xxh64;
+  for (std::size_t i = 0; i < hashes.size(); ++i) {
+    hashes[i] = xxh64(std::as_bytes(std::span(bytes.substr(index.address[i], index.bytes[i]))));
+  }
+  Dataset(file, "cells/xxh64").write(hashes.data());
+}
+
+/// Sets `index_hash` to the hash of what the datasets hold.
+void rehash(hid_t file) {
+  ColumnHashes hashes;
+  for (const char* name :
+       {"sources/names", "sources/bytes", "sources/xxh64", "cells/count", "cells/box",
+        "cells/address", "cells/bytes", "cells/xxh64", "blocks/box", "tree/nodes"}) {
+    hashes.add(Dataset(file, name).values());
+  }
+  const std::uint64_t digest = hashes.digest();
+  const hdf5::Id attribute(H5Aopen(file, "index_hash", H5P_DEFAULT), H5Aclose, "index_hash");
+  hdf5::check(H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &digest), "index_hash");
+}
+
+/// A sound store whose checksums hold but whose numbers are arbitrary, so that HDF5 finds nothing
+/// wrong with it. The bytes are a list of edits.
+void edit_store(Bytes input) {
+  static const SoundStore sound;
+  std::vector<Edit> edits;
+  for (; input.size() >= Edit::kBytes && edits.size() < 8; input = input.subspan(Edit::kBytes)) {
+    edits.emplace_back(input);
+  }
+  std::string bytes = sound.bytes;
+  const CellIndex& index = sound.index;
+  for (const Edit& edit : edits) {
+    if (!edit.is_of_chunk()) continue;
+    const std::size_t chunk = edit.where % index.bytes.size();
+    const std::size_t at = edit.where / index.bytes.size() % (index.bytes[chunk] - 8);
+    std::memcpy(bytes.data() + index.address[chunk] + at, &edit.value, 8);
+  }
+  const MemoryFile file(bytes);
+  may_refuse([&] {
+    const hdf5::Id id(H5Fopen(file.path().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "file");
+    if (bytes != sound.bytes) rehash_chunks(id.get(), bytes, index);
+    for (const Edit& edit : edits) {
+      constexpr unsigned kDatasets = std::size(Edit::kDatasets);
+      const auto act = edit.what < kDatasets       ? edit_dataset
+                       : edit.what < 2 * kDatasets ? resize_dataset
+                                                   : edit_attribute;
+      const char* name = edit.what < 2 * kDatasets ? Edit::kDatasets[edit.what % kDatasets]
+                                                   : Edit::kAttributes[edit.what - 2 * kDatasets];
+      if (!edit.is_of_chunk()) act(id.get(), name, edit);
+    }
+    rehash(id.get());
+  });
+  may_refuse([&] { read_store(file.path()); });
+}
+
+enum JournalKind : std::uint8_t { kFirstPose = 1, kClearance = 2, kPayloads = 4, kProfile = 8 };
+
+constexpr double kNever = 1e9;  // seconds
+const JournalIdentity kIdentity{{"query", "any"}};
+
+/// A cloud of three cells, the last of 22 points.
+const MemoryCloud& cloud() {
+  static const MemoryCloud cloud(cube_cloud(150, -4000, 4000, 3), kMillimetres, {64, 0});
+  return cloud;
+}
+
+void write_payloads(const std::filesystem::path& path, Bytes bytes) {
+  ::unlink(path.c_str());
+  JournalWriter writer = JournalWriter::create(path, kIdentity, kNever);
+  while (bytes.size() >= 2) {
+    const std::size_t size = std::min(bytes[0] + std::size_t{256} * bytes[1], bytes.size() - 2);
+    JournalRecord record;
+    for (const std::uint8_t byte : bytes.subspan(2, size)) record.put(byte);
+    writer.append(record);
+    bytes = bytes.subspan(2 + size);
+  }
+}
+
+void check_result(const SearchResult& answer, const Query& query) {
+  for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
+    if (answer.hits.contains(slot)) {
+      require(cloud().is_used(slot));
+      require(!query.first_pose || answer.hits.first_pose(slot) < query.poses.size());
+    }
+    if (query.clearance > 0 && answer.clearances.at(slot).found()) {
+      require(cloud().is_used(slot) && answer.clearances.at(slot).squared >= 0);
+      require(answer.clearances.at(slot).pose < query.poses.size());
+    }
+  }
+  for (std::uint64_t pose = 0; pose < answer.profile.poses(); ++pose) {
+    const ProfilePoint point = answer.profile.at(pose);
+    if (!point.found()) continue;
+    require(cloud().is_used(point.entry) && point.squared >= 0);
+    require(cloud().source(point.entry) == point.source);
+  }
+}
+
+bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
+  for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
+    if (a.hits.contains(slot) != b.hits.contains(slot)) return false;
+    if (query.first_pose && a.hits.first_pose(slot) != b.hits.first_pose(slot)) return false;
+    if (query.clearance > 0 && a.clearances.at(slot) != b.clearances.at(slot)) return false;
+  }
+  for (std::uint64_t pose = 0; pose < a.profile.poses(); ++pose) {
+    if (a.profile.at(pose) != b.profile.at(pose)) return false;
+  }
+  return true;
+}
+
+SearchResult restored(const SearchJournal& journal, const Query& query) {
+  SearchResult answer = empty_result(cloud(), query);
+  if (query.profile > 0) journal.restore(answer.profile);
+  return result_of(journal.rows(), cloud(), std::move(answer.profile));
+}
+
+/// Restores a journal that could be opened and continues from it; nothing of that may be refused.
+void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJournal& journal,
+           const Query& query) {
+  const SearchResult before = restored(journal, query);
+  check_result(before, query);
+  const CellRows none{.words = std::vector<std::uint64_t>(cloud().blocks_per_cell())};
+  std::uint32_t open = 0;  // the first cell whose colliding points are not known
+  while (open < cloud().cells().size() && journal.rows().answered(open, PointQuestion::kHits)) {
+    ++open;
+  }
+  if (open == cloud().cells().size()) return;
+  journal.rows().add(open, {{PointQuestion::kHits, none}});
+  const JournalReader again(path);
+  require(again.torn().empty() && again.records() == read.records() + 1);
+  require(again.identity() == read.identity());
+  const SearchJournal longer(path, kIdentity, &again, cloud(), query, kNever);
+  require(longer.rows().answered(open, PointQuestion::kHits));
+  require(same(restored(longer, query), before, query));
+}
+
+/// A journal: either it is refused, or what it says belongs to the cloud and the query, and a run
+/// can continue from it. The first byte chooses query and kind: the bytes of a file, or payloads
+/// (their size in two bytes before each) of records whose hashes are right.
+void read_journal_bytes(Bytes input) {
+  static const std::vector<Pose> poses(300);
+  if (input.empty()) return;
+  const std::uint8_t kind = input[0];
+  const Bytes bytes = input.subspan(1);
+  Query query;
+  query.poses = poses;
+  query.first_pose = (kind & kFirstPose) != 0;
+  query.clearance = (kind & kClearance) != 0 ? 0.3 : 0;
+  query.profile = (kind & kProfile) != 0 ? 0.3 : 0;
+  const MemoryFile file(bytes);
+  if ((kind & kPayloads) != 0) write_payloads(file.path(), bytes);
+  std::optional<JournalReader> read;
+  std::optional<SearchJournal> journal;
+  may_refuse([&] {
+    is_journal(file.path());
+    read.emplace(file.path());
+    if (!read->identity()) return;
+    difference(*read->identity(), kIdentity);
+    may_refuse([&] { answered_cells(*read); });
+    journal.emplace(file.path(), kIdentity, &*read, cloud(), query, kNever);
+  });
+  if (journal) go_on(file.path(), *read, *journal, query);
+}
+
+}  // namespace
+
+const Targets clearway::test::kStoreTargets{{"journal", read_journal_bytes},
+                                            {"packed_chunk", read_chunk_bytes},
+                                            {"result", read_result_bytes},
+                                            {"store", read_store_bytes},
+                                            {"store_values", edit_store}};
