@@ -1,35 +1,16 @@
-// Runs the rows of *.case: small files, and what has to be read from them or why they are refused.
-//
-//   let NAME = TEXT         {NAME} stands for TEXT in everything below
-//   = a sentence            begins a block, which has its own settings
-//   read KIND               points (unless set otherwise), mesh, pose, frames, and
-//                           those that crs.case, geotiff.case and e57.case explain
-//   file NAME               the name of the file that the rows are written to
-//   columns 2 3 4           the columns of x, y and z that the caller chooses
-//   beside NAME = TEXT      another file in the folder
-//   start TEXT, end TEXT    stands before, or behind, the text of every row
-//   newline TEXT            is written for every \n
-//   near NUMBER             the tolerance of numbers; they are equal unless it is set
-//   each NAME = A ~ B ~ C   the rows are tried with each of these; several names stand for words
-//   TEXT => FACT | FACT     a row
-//   # a comment
-//
-// TEXT has the escapes \n, \r, \t, \s (a blank), \\ and \xHH, and {f32 1 2} for numbers in binary
-// (i8 to u64, f32 and f64; >f32 is big-endian), {9*TEXT} for repeated text.
-// FACT is `refused WORDS`, the points with commas between, or a name and what it is; `remark` is
-// the next remark as "note CODE: TEXT [NAME NUMBER]", and a row that names none has none. WORDS are
-// those of check_says().
+// Reads the files of *.case, whose form format_cases.hpp explains.
 #include <cmath>
-#include <fstream>
+#include <random>
 #include <sstream>
 
+#include "clearway/outline.hpp"
+#include "formats/format_cases.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/scans/las/geotiff_keys.hpp"
 #include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "io/scans/threedtk/threedtk_frame.hpp"
 #include "support/bytes/e57_bytes.hpp"
-#include "support/bytes/pcd_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
@@ -47,94 +28,6 @@ struct Facts {
   std::map<std::string, std::string> texts;
   std::vector<std::string> remarks;
 };
-
-struct Block {
-  std::string title, kind = "points", file = "a.txt", start, end, newline = "\\n";
-  PointReadOptions options{.may_choose = true};
-  double near = 0;
-  std::map<std::string, std::string> beside;
-  std::vector<std::pair<std::string, std::vector<std::string>>> each;
-};
-
-std::vector<std::string> split(const std::string& text, const std::string& separator) {
-  std::vector<std::string> parts;
-  std::size_t at = 0;
-  for (std::size_t end; (end = text.find(separator, at)) != text.npos; at = end + separator.size())
-    parts.push_back(text.substr(at, end - at));
-  parts.push_back(text.substr(at));
-  return parts;
-}
-
-/// The parts of `NAME = TEXT`.
-std::pair<std::string, std::string> pair_of(const std::string& text) {
-  const std::size_t at = std::min(text.find(" = "), text.size());
-  return {text.substr(0, at), at < text.size() ? text.substr(at + 3) : ""};
-}
-
-void replace_all(std::string& text, const std::string& what, const std::string& with) {
-  for (std::size_t at = 0; (at = text.find(what, at)) != text.npos; at += with.size())
-    text.replace(at, what.size(), with);
-}
-
-std::string unescaped(const std::string& text) {
-  std::string bytes;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '\\') {
-      bytes += text[i];
-      continue;
-    }
-    static const std::map<char, char> kEscapes{
-        {'n', '\n'}, {'r', '\r'}, {'t', '\t'}, {'s', ' '}, {'\\', '\\'}};
-    if (text.at(++i) == 'x') {
-      bytes += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    } else {
-      bytes += kEscapes.at(text[i]);
-    }
-  }
-  return bytes;
-}
-
-template <typename Number>
-std::string binary(double value, bool big) {
-  std::string bytes = raw(static_cast<Number>(value)), escaped;
-  if (big) std::reverse(bytes.begin(), bytes.end());
-  for (const unsigned char c : bytes) {
-    constexpr const char* kDigits = "0123456789ABCDEF";
-    escaped += {'\\', 'x', kDigits[c / 16], kDigits[c % 16]};
-  }
-  return escaped;
-}
-
-/// What stands for {words}: a text of that name, a repeated text, or numbers.
-std::string expanded(const std::string& words, const std::map<std::string, std::string>& names) {
-  if (const auto named = names.find(words); named != names.end()) return named->second;
-  std::string out;
-  if (const std::size_t star = words.find('*'); star != words.npos) {
-    for (int i = std::stoi(words); i > 0; --i) out += words.substr(star + 1);
-    return out;
-  }
-  static const std::map<std::string, std::string (*)(double, bool)> kTypes{
-      {"i8", binary<std::int8_t>},   {"u8", binary<std::uint8_t>},
-      {"i16", binary<std::int16_t>}, {"u16", binary<std::uint16_t>},
-      {"i32", binary<std::int32_t>}, {"u32", binary<std::uint32_t>},
-      {"i64", binary<std::int64_t>}, {"u64", binary<std::uint64_t>},
-      {"f32", binary<float>},        {"f64", binary<double>}};
-  const bool big = words[0] == '>';
-  std::istringstream in(words.substr(big ? 1 : 0));
-  std::string type;
-  in >> type;
-  for (std::string number; in >> number;) out += kTypes.at(type)(std::stod(number), big);
-  return out;
-}
-
-std::string with_names(std::string text, const std::map<std::string, std::string>& names) {
-  for (std::size_t end; (end = text.find('}')) != text.npos;) {  // the innermost one first
-    const std::size_t begin = text.rfind('{', end);
-    text.replace(begin, end + 1 - begin, expanded(text.substr(begin + 1, end - begin - 1), names));
-  }
-  return text;
-}
 
 std::string words_of(const Message& remark) {
   std::ostringstream out;
@@ -206,7 +99,7 @@ Facts read_points(const std::filesystem::path& path, const PointReadOptions& opt
 Facts read_mesh_file(const std::filesystem::path& path) {
   File file = File::open_for_reading(path);
   const auto format = mesh_format_of(file, path);
-  REQUIRE(format);
+  if (!format) return {};
   const MeshFile read =
       read_mesh(InputBuffer(std::move(file), InputBuffer::Access::kSeek), *format);
   Facts facts;
@@ -314,17 +207,32 @@ Facts read_geotiff(const std::string& text) {
   return crs_facts(crs.units, crs.unread + crs.unread_heights, crs.crs, x, y);
 }
 
-Facts read_file(const Block& block, const std::filesystem::path& path) {
+Facts read_outline_file(const std::filesystem::path& path, const std::string& kind) {
+  OutlineOptions options{.mirror = kind.ends_with("half")};
+  if (kind.ends_with("millimetres")) options.unit = kMetresPerMillimetre;
+  Facts facts;
+  std::vector<Message> messages;
+  for (const OutlinePoint& p : read_outline(path, options, &messages)) {
+    facts.numbers["corners"].insert(facts.numbers["corners"].end(), {p.y, p.z});
+  }
+  for (const Message& message : messages) facts.remarks.push_back(words_of(message));
+  return facts;
+}
+
+Facts read_file(const FormatCase& one, const std::filesystem::path& path) {
+  const std::string kind = one.setting("read", "points");
   try {
-    if (block.kind == "mesh") return read_mesh_file(path);
-    if (block.kind.starts_with("e57")) {
-      put_bytes(path, e57_after(bytes_of(path), block.kind.ends_with("packets")));
-      return read_points(path, {});
+    if (kind.starts_with("outline")) return read_outline_file(path, kind);
+    if (kind == "mesh") return read_mesh_file(path);
+    if (kind == "crs") return read_crs(one.bytes);
+    if (kind == "geotiff") return read_geotiff(one.bytes);
+    if (kind == "pose" || kind == "frames") return read_pose(path, kind == "frames");
+    if (kind.starts_with("e57")) {
+      put_bytes(path, e57_after(one.bytes, kind.ends_with("packets")));
     }
-    if (block.kind == "points") return read_points(path, block.options);
-    if (block.kind == "crs") return read_crs(bytes_of(path));
-    if (block.kind == "geotiff") return read_geotiff(bytes_of(path));
-    return read_pose(path, block.kind == "frames");
+    const std::string columns = one.setting("columns");
+    return read_points(path,
+                       {columns.empty() ? std::vector<std::string>() : split(columns, " "), true});
   } catch (const InputError& error) {
     check_says(error.what(), path.parent_path().string());
     Facts facts;
@@ -355,107 +263,61 @@ void check_fact(const Facts& facts, const std::string& fact, double tolerance) {
   CHECK(same(found->second, expected, tolerance));
 }
 
-void check_row(const Block& block, const std::string& text, const std::string& expected) {
+void check(const FormatCase& one) {
+  const RowName row(one.title);
   const ScratchFolder folder;
-  for (const auto& [name, other] : block.beside) folder.write(name, unescaped(other));
-  std::string all = block.start + text + block.end;
-  replace_all(all, "\\n", block.newline);
-  const Facts facts = read_file(block, folder.write(block.file, unescaped(all)));
+  for (const auto& [name, other] : one.beside) folder.write(name, other);
+  const auto path = folder.write(one.name, one.bytes);
+  const Facts facts = read_file(one, path);
   std::vector<std::string> remarks;
   bool refused = false, absent = false;
-  for (const std::string& fact : split(expected, " | ")) {
+  for (const std::string& fact : split(one.facts, " | ")) {
     refused = refused || fact.starts_with("refused");
     absent = absent || fact.starts_with("absent");
     if (fact.starts_with("remark ")) {
       remarks.push_back(fact.substr(7));
     } else if (fact != "read") {
-      check_fact(facts, fact, block.near);
+      check_fact(facts, fact, std::stod(one.setting("near", "0")));
     }
   }
   if (refused) return;
   if (facts.texts.contains("refused")) return fail_check(facts.texts.at("refused"));
   if (facts.numbers.contains("absent") && !absent) CHECK(facts.numbers.at("absent").empty());
-  if (facts.remarks.size() != remarks.size()) {
-    std::string found = "its remarks are: ";
-    for (const std::string& remark : facts.remarks) found += remark + " | ";
-    return fail_check(found);
-  }
+  std::string found = "its remarks are: ";
+  for (const std::string& remark : facts.remarks) found += remark + " | ";
+  if (facts.remarks.size() != remarks.size()) return fail_check(found);
   for (std::size_t i = 0; i < remarks.size(); ++i) check_says(facts.remarks[i], remarks[i]);
 }
 
-/// Checks the row with all choices of the block's names.
-void check_each(const Block& block, std::map<std::string, std::string> names,
-                const std::string& row, std::size_t chosen = 0) {
-  if (chosen < block.each.size()) {
-    for (std::string choice : block.each[chosen].second) {
-      choice.erase(0, choice.find_first_not_of(' '));
-      choice.erase(choice.find_last_not_of(' ') + 1);
-      const auto words = split(block.each[chosen].first, " ");
-      const auto values = words.size() == 1 ? std::vector{choice} : split(choice + " ", " ");
-      for (std::size_t i = 0; i < words.size(); ++i) {
-        names[words[i]] = with_names(values.at(i), names);
-      }
-      check_each(block, names, row, chosen + 1);
+/// Checks that a file of which some bytes are changed, and perhaps the end cut, is read or refused.
+void damage(const FormatCase& one, std::mt19937& random) {
+  if (one.bytes.empty() || one.bytes.size() > 10'000) return;
+  const ScratchFolder folder;
+  for (const auto& [name, other] : one.beside) folder.write(name, other);
+  for (int round = 0; round < 10; ++round) {
+    FormatCase damaged = one;
+    for (std::size_t flips = 1 + random() % 4; flips > 0; --flips) {
+      damaged.bytes[random() % one.bytes.size()] =
+          static_cast<char>(random() % 3 ? random() : 0xFF);
     }
-    return;
+    if (random() % 8 == 0) damaged.bytes.resize(random() % one.bytes.size());
+    try {
+      read_file(damaged, folder.write(one.name, damaged.bytes));
+    } catch (const Error&) {
+    }
   }
-  Block one = block;
-  for (std::string* text : {&one.file, &one.start, &one.end, &one.newline}) {
-    *text = with_names(*text, names);
-  }
-  one.beside.clear();
-  for (const auto& [name, text] : block.beside) {
-    one.beside[with_names(name, names)] = with_names(text, names);
-  }
-  const std::size_t arrow = row.find(" => ");
-  const std::string text = row.substr(0, arrow), facts = row.substr(arrow + 4);
-  const RowName name(block.title + ": " + with_names(text, names).substr(0, 300));
-  check_row(one, with_names(text, names), with_names(facts, names));
 }
 
-void set(Block& block, const std::string& key, const std::string& value) {
-  const auto pair = pair_of(value);
-  if (key == "read") block.kind = value;
-  if (key == "file") block.file = value;
-  if (key == "columns") block.options.columns = split(value, " ");
-  if (key == "beside") block.beside[pair.first] = pair.second;
-  if (key == "start") block.start = value;
-  if (key == "end") block.end = value;
-  if (key == "newline") block.newline = value;
-  if (key == "near") block.near = std::stod(value);
-  if (key == "each") block.each.emplace_back(pair.first, split(" " + pair.second + " ", " ~ "));
-}
-
-/// Runs a file. Settings before its first block are those of all blocks.
 void run(const std::string& name) {
-  std::ifstream file(std::string(CLEARWAY_FORMAT_CASES) + "/" + name);
-  REQUIRE(file);
-  Block first, block;
-  std::map<std::string, std::string> names;
-  int rows = 0;
-  for (std::string line; std::getline(file, line);) {
-    const bool is_row = line.find(" => ") != line.npos;
-    if (line.empty() || (line[0] == '#' && !is_row)) continue;
-    if (is_row) {
-      ++rows;
-      check_each(block, names, line);
-      continue;
-    }
-    const std::size_t blank = line.find(' ');
-    const std::string key = line.substr(0, blank), value = line.substr(blank + 1);
-    if (key == "=") {
-      if (first.title.empty()) first = block;
-      block = first;
-      block.title = value;
-      first.title = name;
-    } else if (key == "let") {
-      const auto pair = pair_of(value);
-      names[pair.first] = with_names(pair.second, names);
-    } else {
-      set(block, key, value);
-    }
-  }
-  CHECK(rows > 0);
+  std::mt19937 random(1);
+  int cases = 0;
+  FormatCases(std::string(CLEARWAY_FORMAT_CASES) + "/" + name, [&](const FormatCase& one) {
+    check(one);
+    const std::string kind = one.setting("read");
+    if (kind != "crs" && kind != "geotiff" && !kind.starts_with("e57")) damage(one, random);
+    ++cases;
+  });
+  CHECK(cases > 0);
 }
 
 }  // namespace
@@ -471,3 +333,4 @@ TEST_CASE("meshes of STL, OBJ, OFF and PLY are read or refused") { run("mesh.cas
 TEST_CASE("coordinate reference systems that cannot be used as they are") { run("crs.case"); }
 TEST_CASE("GeoTIFF keys name units, maps and heights, or are named") { run("geotiff.case"); }
 TEST_CASE("an E57 file that says what cannot be is refused") { run("e57.case"); }
+TEST_CASE("outlines are read as corners or refused") { run("outline.case"); }

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "core/cloud/packed_cloud.hpp"
+#include "formats/format_cases.hpp"
 #include "io/result/journal.hpp"
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
@@ -100,73 +101,42 @@ void write_e57(Seeds& seeds) {
   }
 }
 
+/// Writes the files of tests/formats, which are of one target for each reader and ending.
+void write_cases(Seeds& seeds) {
+  const std::map<std::string, std::pair<const char*, std::initializer_list<int>>> targets{
+      {"points.ply", {"ply", {}}},  {"points.pcd", {"pcd", {}}}, {"points.ptx", {"ptx", {0}}},
+      {"points.pts", {"ptx", {1}}}, {"points.3d", {"ptx", {3}}}, {"pose.3d", {"ptx", {4}}},
+      {"frames.3d", {"ptx", {5}}},  {"points.csv", {"xyz", {}}}, {"mesh.stl", {"mesh", {0}}},
+      {"mesh.obj", {"mesh", {1}}},  {"mesh.off", {"mesh", {2}}}, {"mesh.ply", {"mesh", {3}}}};
+  for (const std::string name : {"mesh", "pcd", "ply", "ptx", "text", "threedtk"}) {
+    FormatCases(
+        std::string(CLEARWAY_FORMAT_CASES) + "/" + name + ".case", [&](const FormatCase& one) {
+          const auto found = targets.find(one.setting("read", "points") +
+                                          std::filesystem::path(one.name).extension().string());
+          if (found == targets.end() || one.bytes.size() > 65536) return;
+          seeds.add(found->second.first, found->second.second, one.bytes);
+        });
+  }
+}
+
+/// Writes binary files of which tests/formats has none.
 void write_points(Seeds& seeds) {
-  const auto ply = [&](const std::string& format, const std::string& body) {
-    seeds.add("ply", {}, "ply\nformat " + format + " 1.0\n" + body);
-  };
-  const std::string lists =
-      "comment c\nelement a 2\nproperty list uchar int n\nelement vertex 2\nproperty float x\n"
-      "property double y\nproperty short z\nproperty list char uchar l\nend_header\n";
-  ply("binary_little_endian", lists + std::string(100, '\1'));
-  ply("binary_big_endian", lists + std::string(100, '\1'));
-  ply("ascii", lists + "0\n1 7\n1 2 3 0\n4 5 6 1 9\n");
-  const std::string plain =
-      "element vertex 2\nproperty uint8 x\nproperty int32 y\nproperty float64 z\nend_header\n";
-  ply("ascii", plain + "1 2 3\n4 -5 6e-1\n");
-  ply("binary_little_endian", plain + std::string(26, '\2'));
-
-  const auto pcd = [&](const PcdHeaderText& header, const std::string& data,
-                       const std::string& body) {
-    seeds.add("pcd", {}, header.build(data) + body);
-  };
   PcdHeaderText header;
-  const std::string columns = raw(1.F, 1.F, 2.F, 2.F, 3.F, 3.F);
-  pcd(header, "ascii", "1 2 3\n4,5,6\n");
-  pcd(header, "binary", columns + std::string(20, '\0'));
-  pcd(header, "binary_compressed", compressed(columns));
+  const auto pcd = [&](const std::string& columns) {
+    seeds.add("pcd", {}, header.build("binary_compressed") + compressed(columns));
+  };
+  pcd(raw(1.F, 1.F, 2.F, 2.F, 3.F, 3.F));
   header = {"z _ n Y x", "8 1 4 2 4", "F U F I F", "1 2 2 1 1", "1", "2", "1 2 3 0 1 0 0", "2"};
-  pcd(header, "ascii", "nan 0 0 7 7 2 1.5\n6 0 0 1 1 5 4\n");
-  pcd(header, "binary", std::string(48, '\2'));
-  pcd(header, "binary_compressed", compressed(std::string(44, '\3')));
+  pcd(std::string(44, '\3'));
   header = {"x y z", "8 8 8", "F F F", "1 1 1", "300", "300", "0 0 0 1 0 0 0", "90000"};
-  pcd(header, "binary_compressed", compressed(std::string(2'160'000, '\1')));
-  seeds.add("pcd", {}, "COLUMNS x y z\nPOINTS 1\nDATA ascii\n1 2 3");
-
-  const TriangleMesh cube = unit_cube();
-  seeds.add("mesh", {0}, ascii_stl(cube));
-  seeds.add("mesh", {0}, binary_stl(cube, "solid"));
-  seeds.add("mesh", {1}, obj_text(cube));
-  seeds.add("mesh", {2}, off_text(cube));
-  seeds.add("mesh", {3}, ply_mesh(cube, "ascii"));
-  seeds.add("mesh", {3}, ply_mesh(cube, "binary_little_endian"));
+  pcd(std::string(2'160'000, '\1'));
+  seeds.add("mesh", {0}, binary_stl(unit_cube(), "solid"));
+  seeds.add("mesh", {3}, ply_mesh(unit_cube(), "binary_little_endian"));
 }
 
 void write_texts(Seeds& seeds) {
   const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
-  const std::string ptx =
-      "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n1 2 3 1\n0 0 0 0.5\n"
-      "1 2 3 0.5 1 2 3\n";
   const std::tuple<const char*, std::initializer_list<int>, std::string> rows[] = {
-      {"mesh",
-       {1},
-       "v 0 0 0 1\nv 1 0 0\nv 1 1 0\nv 0.5 .2 0\nv 0 1 0\nf -5/1/1 2//2 -3 \\\n4/4 5\nl 1 2\n"},
-      {"mesh",
-       {2},
-       "COFF 4 1 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n1 1 0 1 1 1 1 # c\n0 1 0 1 1 1 1\n4 0 1 2 3 9\n"},
-      {"ptx", {0}, ptx + ptx},
-      {"ptx", {1}, "1\n1 2 3 -5\n2\n1 2 3\n4 5 6\n"},
-      {"ptx", {2}, ptx},
-      {"ptx", {3}, "361 225\n1 2 3 0.5\n4 5 6\n"},
-      {"ptx", {4}, "1 2 3\n4 5 6\n"},
-      {"ptx", {5}, "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n1 0 0 0 0 0 1 0 0 -1 0 0 1 2 3 1\n"},
-      {"xyz", {}, "2\n1 2 3 4\n5 6 7 8\n"},
-      {"xyz", {}, "# c\n1.5;-2e3;+3\n4;5;6;7\n"},
-      {"xyz", {}, "\xEF\xBB\xBF//X Z Y\n1 2 3\nnan inf 1\n"},
-      {"xyz", {}, "a,z,y,x\n1,2,3,4\r\n5,6,7,8"},
-      {"xyz", {}, "# id Easting [m] Northing [ft] H (mm)\nP1 1 2 3\nP2 4 5 6\n"},
-      {"xyz", {}, "Lat;Lon;E_m;N;Elevation\n1;2;3;4;5\n1,5;2;3;4;5."},
-      {"xyz", {}, "0.1 1 2 3 0 0 0.6 0.8\n0.2 1 2 3 0 0 0.8 0.6\n"},
-      {"xyz", {}, "1 0 0 5 0 1 0 6 0 0 1 7\n0 5.5 3.25 1\n1 5.5 3.25 1\n2 5.25 3.5 1\n"},
       {"trajectory", {0, 0}, "# c\n" + matrix + "\n" + matrix + "\n"},
       {"trajectory", {1, 108}, matrix + " 0 0 0 1\n// c\n"},
       {"trajectory", {2, 54}, "1.5 1 2 3 0 0 0 1\n"},
@@ -326,8 +296,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   Seeds seeds(argv[1]);
-  for (const auto write : {write_scans, write_e57, write_points, write_texts, write_alignments,
-                           write_stores, write_journals}) {
+  for (const auto write : {write_scans, write_e57, write_cases, write_points, write_texts,
+                           write_alignments, write_stores, write_journals}) {
     write(seeds);
   }
 }

@@ -128,3 +128,19 @@ TEST_CASE("a mast beside a closed part leaves it solid") {
   REQUIRE(solid.solid_of.size() == 14);
   for (std::size_t i = 0; i < 14; ++i) CHECK(solid.solid_of[i] == (i < 12 ? 0 : kNoSolid));
 }
+
+TEST_CASE("a box is a model without a file, in metres or in named units") {
+  const Model box = read_model("box:30,5,4.3", {.as = ModelAs::kSolid});
+  check_equal(box.vertices.size(), 8);
+  check_equal(box.triangles.size(), 12);
+  check_equal(box.solid_count(), 1);
+  CHECK(box.vertices[0] == Vec3{-15, -2.5, 0});
+  CHECK(read_model("box:3000cm,5 m,4.3", {.as = ModelAs::kSolid}) == box);
+  const Model feet = read_model("box:30,5,4.3", {.environment_unit = kMetresPerFoot});
+  check_near(feet.vertices[0].x, -15 / 0.3048, 1e-12);
+  for (const char* text : {"box:", "box:1,2", "box:1,2,3,4", "box:1,2,0", "box:1,2,-3", "box:a,b,c",
+                           "box:1,,2", "box:1,2,3,", "box:1,2,inf"}) {
+    CAPTURE(text);
+    check_refused([&] { return read_model(text); }, "expected a box as box:LENGTH,WIDTH,HEIGHT");
+  }
+}

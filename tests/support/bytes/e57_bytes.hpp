@@ -110,21 +110,14 @@ struct E57Bytes {
     return logical / (page - 4) * page + logical % (page - 4);
   }
 
-  /// CRC-32C, computed byte by byte.
+  /// CRC-32C, computed bit by bit.
   static std::uint32_t checksum(const char* bytes, std::size_t count) {
-    static const auto kTable = [] {
-      std::array<std::uint32_t, 256> table{};
-      for (std::uint32_t i = 0; i < 256; ++i) {
-        table[i] = i;
-        for (int bit = 0; bit < 8; ++bit) {
-          table[i] = (table[i] >> 1) ^ ((table[i] & 1) != 0 ? 0x82F63B78U : 0U);
-        }
-      }
-      return table;
-    }();
     std::uint32_t remainder = 0xFFFFFFFF;
     for (std::size_t i = 0; i < count; ++i) {
-      remainder = remainder >> 8 ^ kTable[(remainder ^ static_cast<unsigned char>(bytes[i])) & 255];
+      remainder ^= static_cast<unsigned char>(bytes[i]);
+      for (int bit = 0; bit < 8; ++bit) {
+        remainder = (remainder >> 1) ^ ((remainder & 1) != 0 ? 0x82F63B78U : 0U);
+      }
     }
     return ~remainder;
   }

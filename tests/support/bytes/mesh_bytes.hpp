@@ -10,19 +10,14 @@ namespace clearway::test {
 
 /// The cube from 0 to 1: 8 vertices, and 12 triangles that are counter-clockwise seen from outside.
 inline TriangleMesh unit_cube() {
-  return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}},
-          {{0, 3, 2},
-           {0, 2, 1},
-           {4, 5, 6},
-           {4, 6, 7},
-           {0, 1, 5},
-           {0, 5, 4},
-           {1, 2, 6},
-           {1, 6, 5},
-           {2, 3, 7},
-           {2, 7, 6},
-           {3, 0, 4},
-           {3, 4, 7}}};
+  constexpr std::uint32_t kSides[][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+  TriangleMesh cube{
+      {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}}, {}};
+  for (const auto& [a, b, c, d] : kSides) {
+    cube.triangles.insert(cube.triangles.end(), {{a, b, c}, {a, c, d}});
+  }
+  return cube;
 }
 
 inline std::string words(const Vec3& v) {
@@ -62,24 +57,24 @@ inline std::string binary_stl(const TriangleMesh& mesh, std::string header = "ma
   return bytes;
 }
 
-inline std::string obj_text(const TriangleMesh& mesh) {
+/// A line for each vertex and for each triangle, whose first vertex has the number `first`.
+inline std::string lines_of(const TriangleMesh& mesh, const std::string& vertex,
+                            const std::string& triangle, std::uint32_t first) {
   std::string text;
-  for (const Vec3& v : mesh.vertices) text += "v " + words(v) + "\n";
-  for (const auto& [a, b, c] : mesh.triangles) {
-    text += "f " + std::to_string(a + 1) + " " + std::to_string(b + 1) + " " +
-            std::to_string(c + 1) + "\n";
+  for (const Vec3& v : mesh.vertices) text += vertex + words(v) + "\n";
+  for (const auto& corners : mesh.triangles) {
+    text += triangle;
+    for (const std::uint32_t corner : corners) text += " " + std::to_string(corner + first);
+    text += "\n";
   }
   return text;
 }
 
+inline std::string obj_text(const TriangleMesh& mesh) { return lines_of(mesh, "v ", "f", 1); }
+
 inline std::string off_text(const TriangleMesh& mesh) {
-  std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
-                     std::to_string(mesh.triangles.size()) + " 0\n";
-  for (const Vec3& v : mesh.vertices) text += words(v) + "\n";
-  for (const auto& [a, b, c] : mesh.triangles) {
-    text += "3 " + std::to_string(a) + " " + std::to_string(b) + " " + std::to_string(c) + "\n";
-  }
-  return text;
+  return "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
+         std::to_string(mesh.triangles.size()) + " 0\n" + lines_of(mesh, "", "3", 0);
 }
 
 /// The mesh as PLY. format: "ascii" or "binary_little_endian".
@@ -89,19 +84,13 @@ inline std::string ply_mesh(const TriangleMesh& mesh, const std::string& format)
                       "\nproperty double x\nproperty double y\nproperty double z\nelement face " +
                       std::to_string(mesh.triangles.size()) +
                       "\nproperty list uchar int vertex_indices\nend_header\n";
-  const bool text = format == "ascii";
+  if (format == "ascii") return bytes + lines_of(mesh, "", "3", 0);
   for (const Vec3& v : mesh.vertices) {
-    if (text) bytes += words(v) + "\n";
-    for (int k = 0; k < 3 && !text; ++k) put(bytes, v[k]);
+    for (int k = 0; k < 3; ++k) put(bytes, v[k]);
   }
   for (const auto& triangle : mesh.triangles) {
-    if (text) {
-      bytes += "3 " + std::to_string(triangle[0]) + " " + std::to_string(triangle[1]) + " " +
-               std::to_string(triangle[2]) + "\n";
-    } else {
-      bytes += '\3';
-      for (const std::uint32_t v : triangle) put(bytes, v);
-    }
+    bytes += '\3';
+    for (const std::uint32_t v : triangle) put(bytes, v);
   }
   return bytes;
 }

@@ -18,73 +18,71 @@ using namespace clearway::test;
 
 namespace {
 
+unsigned any_format() {
+  return GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
+}
+
 /// Reads the file, the file again, and the bytes as a stream; each must give the points.
 void check_reads(const LazBytes& laz) {
-  ScratchFolder scratch;
+  CAPTURE(laz.las.format, laz.chunks, laz.variable, laz.chunked);
+  const ScratchFolder scratch;
   const auto path = scratch.write("a.laz", laz.build());
-  const auto expected = positions_of(laz.points);
   const auto reader = open_point_file(path);
   CHECK(reader->info().declared_points == laz.points.size());
   CHECK(*reader->info().quantisation == Quantisation{{0.001, 0.01, 0.1}, {100, -200, 0}});
-  const ReadCloud read = read_all(*reader);
-  CHECK(read.quanta == expected);
-  CHECK(read.classes == classes_of(laz));
-  CHECK(read.flags == flags_of(laz));
+  const auto check = [&](const ReadCloud& read) {
+    CHECK(read.quanta == positions_of(laz.points));
+    CHECK(read.classes == classes_of(laz));
+    CHECK(read.flags == flags_of(laz));
+  };
+  check(read_all(*reader));
   reader->rewind();
-  const ReadCloud again = read_all(*reader);
-  CHECK(again.quanta == expected);
-  CHECK(again.classes == classes_of(laz));
-  CHECK(again.flags == flags_of(laz));
+  check(read_all(*reader));
   const auto stream = open_las_stream(File::open_for_reading(path), scratch.folder());
   CHECK(stream->can_rewind());
-  CHECK(read_all(*stream).quanta == expected);
+  check(read_all(*stream));
 }
 
 }  // namespace
 
 TEST_CASE("LAZ holds the integers of its points, in every format and division into chunks") {
-  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
-  CAPTURE(format);
-  LazBytes laz = laz_bytes(format, 3000);
-  SECTION("equal chunks") { laz.chunks = {1000}; }
-  SECTION("the last chunk with fewer") { laz.chunks = {701}; }
-  SECTION("chunks of one point") {
-    laz.points.resize(7);
-    laz.chunks = {1};
+  const LazBytes laz = laz_bytes(any_format(), 3000);
+  using Counts = std::vector<std::uint32_t>;
+  for (const Counts& chunks : {Counts{1000}, {701}, {50000}}) {
+    LazBytes divided = laz;
+    divided.chunks = chunks;
+    check_reads(divided);
+    divided.table = LazBytes::Table::kAtEnd;
+    check_reads(divided);
+    divided.table = LazBytes::Table::kNone;
+    check_reads(divided);
   }
-  SECTION("one chunk") { laz.chunks = {50000}; }
-  SECTION("chunks of any size") {
-    laz.variable = true;
-    laz.chunks = {1, 700, 2, 3, 1200, 1};
+  LazBytes other = laz;
+  other.variable = true;
+  other.chunks = {1, 700, 2, 3, 1200, 1};
+  check_reads(other);
+  if (laz.las.format < 6) {
+    other = laz;
+    other.chunked = false;
+    check_reads(other);
   }
-  SECTION("the place of the table at the file's end") {
-    laz.chunks = {701};
-    laz.table = LazBytes::Table::kAtEnd;
+  other = laz;
+  other.chunks = {500};
+  for (std::size_t i = 0; i < other.points.size(); ++i) {  // one class in each chunk
+    other.points[i].classification = static_cast<std::uint8_t>(i / 500 + 1);
   }
-  SECTION("no table") {
-    laz.chunks = {701};
-    laz.table = LazBytes::Table::kNone;
-  }
-  SECTION("no chunks") {
-    if (format >= 6) return;
-    laz.chunked = false;
-  }
-  SECTION("no points") { laz.points.clear(); }
-  SECTION("one class in each chunk") {
-    laz.chunks = {500};
-    for (std::size_t i = 0; i < laz.points.size(); ++i) {
-      laz.points[i].classification = static_cast<std::uint8_t>(i / 500 + 1);
-    }
-  }
-  check_reads(laz);
+  check_reads(other);
+  other.points.resize(7);
+  other.chunks = {1};
+  check_reads(other);
+  other.points.clear();
+  check_reads(other);
 }
 
 TEST_CASE("the flags of LAZ are those of its points, where they change often, once or never") {
-  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
-  CAPTURE(format);
-  LazBytes laz = laz_bytes(format, 3000);
+  LazBytes laz = laz_bytes(any_format(), 3000);
   laz.chunks = {700};
-  std::mt19937 random(format);
+  std::mt19937 random(laz.las.format);
   for (const bool often : {true, false}) {
     for (std::size_t i = 0; i < laz.points.size(); ++i) {
       const auto bits = static_cast<unsigned>(often ? random() % 16 : i < 1000 ? 4 : 2);
@@ -96,45 +94,40 @@ TEST_CASE("the flags of LAZ are those of its points, where they change often, on
 }
 
 TEST_CASE("GPS times of LAZ are those of its points, where they are asked for") {
-  const unsigned format = GENERATE(from_range(std::begin(kLazFormats), std::end(kLazFormats)));
-  CAPTURE(format);
-  LazBytes laz = laz_bytes(format, 3000);
-  SECTION("chunks") { laz.chunks = {701}; }
-  SECTION("no table") {
-    laz.chunks = {701};
-    laz.table = LazBytes::Table::kNone;
-  }
-  SECTION("times that stay") {
-    laz.chunks = {1000};
-    for (std::size_t i = 0; i < laz.points.size(); ++i) laz.points[i].gps_time = i / 1000;
-  }
-  SECTION("a chunk that is too large to be kept") {
-    laz = laz_bytes(format, 300000);
-    laz.chunks = {300000};
-  }
-  ScratchFolder scratch;
-  const auto path = scratch.write("a.laz", laz.build());
+  const unsigned format = any_format();
   const bool has_times = format != 0 && format != 2;
-  const auto check = [&](const std::vector<double>& times) {
+  std::vector<LazBytes> files(3, laz_bytes(format, 3000));
+  files[0].chunks = {701};
+  files[1] = files[0];
+  files[1].table = LazBytes::Table::kNone;
+  files[2].chunks = {1000};
+  for (std::size_t i = 0; i < 3000; ++i) files[2].points[i].gps_time = i / 1000;
+  files.push_back(laz_bytes(format, 300000));  // in a chunk that is too large to be kept
+  files[3].chunks = {300000};
+  for (const LazBytes& laz : files) {
+    CAPTURE(format, laz.chunks);
+    const ScratchFolder scratch;
+    const auto path = scratch.write("a.laz", laz.build());
+    const auto reader = open_point_file(path, {.with_times = true});
+    CHECK((reader->info().gps_times == GpsTimes::kWeekSeconds) == has_times);
+    PointBatch batch;
+    std::vector<double> times, of_pieces;
+    while (reader->read(batch)) times.insert(times.end(), batch.times.begin(), batch.times.end());
+    for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
+      reader->read_piece(piece, batch, nullptr);
+      of_pieces.insert(of_pieces.end(), batch.times.begin(), batch.times.end());
+    }
     REQUIRE(times.size() == (has_times ? laz.points.size() : 0));
     for (std::size_t i = 0; i < times.size(); ++i) {
       REQUIRE(std::bit_cast<std::uint64_t>(times[i]) == laz.points[i].gps_time);
     }
-  };
-  const auto reader = open_point_file(path, {.with_times = true});
-  CHECK((reader->info().gps_times == GpsTimes::kWeekSeconds) == has_times);
-  PointBatch batch;
-  std::vector<double> times;
-  while (reader->read(batch)) times.insert(times.end(), batch.times.begin(), batch.times.end());
-  check(times);
-  times.clear();
-  for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
-    reader->read_piece(piece, batch, nullptr);
-    times.insert(times.end(), batch.times.begin(), batch.times.end());
+    if (reader->pieces() > 0) {
+      CHECK((std::ranges::equal(times, of_pieces, {}, std::bit_cast<std::uint64_t, double>,
+                                std::bit_cast<std::uint64_t, double>)));
+    }
+    const auto without = open_point_file(path);
+    while (without->read(batch)) CHECK(batch.times.empty());
   }
-  if (reader->pieces() > 0) check(times);
-  const auto without = open_point_file(path);
-  while (without->read(batch)) CHECK(batch.times.empty());
 }
 
 TEST_CASE("chunks larger than a group's are read in pieces, by any number of threads") {
@@ -159,20 +152,22 @@ TEST_CASE("batches of LAZ have at most the usual size, and no fewer points than 
 }
 
 TEST_CASE("a CRS before and behind compressed points is read") {
-  LazBytes laz = laz_bytes(6, 20);
-  const std::string wkt = R"(LOCAL_CS["a",UNIT["foot",0.3048]])";
-  SECTION("before") { laz.las.vlrs = {{"LASF_Projection", 2112, wkt}}; }
-  SECTION("behind") { laz.las.evlrs = {{"copc", 1000, "any"}, {"LASF_Projection", 2112, wkt}}; }
-  ScratchFolder scratch;
-  const auto path = scratch.write("a.laz", laz.build());
-  CHECK(open_point_file(path)->info().crs_wkt == wkt);
-  CHECK(open_point_file(path)->info().unit == LengthUnit::kFoot);
-  CHECK(read_all(path).quanta == positions_of(laz.points));
+  const LasBytes::Record crs{"LASF_Projection", 2112, R"(LOCAL_CS["a",UNIT["foot",0.3048]])"};
+  LazBytes before = laz_bytes(6, 20), behind = before;
+  before.las.vlrs = {crs};
+  behind.las.evlrs = {{"copc", 1000, "any"}, crs};
+  for (const LazBytes& laz : {before, behind}) {
+    const ScratchFolder scratch;
+    const ReadCloud cloud = read_all(scratch.write("a.laz", laz.build()));
+    CHECK(cloud.info.crs_wkt == crs.payload);
+    CHECK(cloud.info.unit == LengthUnit::kFoot);
+    CHECK(cloud.quanta == positions_of(laz.points));
+  }
 }
 
 TEST_CASE("a file without a chunk table says so, one with it says nothing") {
   LazBytes laz = laz_bytes(0, 20);
-  ScratchFolder scratch;
+  const ScratchFolder scratch;
   CHECK(read_all(scratch.write("a.laz", laz.build())).info.remarks.empty());
   laz.table = LazBytes::Table::kNone;
   const auto remarks = read_all(scratch.write("b.laz", laz.build())).info.remarks;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 #include <regex>
+#include <sstream>
 
 #include "clearway/model.hpp"
 #include "support/catch.hpp"
@@ -144,44 +145,21 @@ const Row kOthers[] = {
     {"1+i/5 1+2i%5 far", "row", 3, {12, 100, 250}}};
 
 /// Layouts of points that are sorted or lie in a grid, which few lines do not tell.
-const char* const kSorted[] = {"0.05i@3 5.250 u u",
-                               "0.05i@3 0.02i@3 u 0.5",
-                               "0.05i@3 u u 17",
-                               "0.05i@3 u u -9u",
-                               "0.05i+0.03u 9u u u",
-                               "0.05i@3 u u i%255 7 9",
-                               "0.05i@3 wave 1.0i@3 cos sin 0.000",
-                               "5e5+0.05i@2 north cm 388721.25+1e-5i@6",
-                               "0.5i u u",
-                               "i/7 i%7 i%3 i%5",
-                               "i/7 i%7 cm 1 2 3",
-                               "i/7 i%7 cm cm",
-                               "i/7 i%7 cm cos sin 0.0000",
-                               "i/7 5i%7 cm cm cm"};
+constexpr const char* kSorted =
+    "0.05i@3 5.250 u u; 0.05i@3 0.02i@3 u 0.5; 0.05i@3 u u 17; 0.05i@3 u u -9u; "
+    "0.05i+0.03u 9u u u; 0.05i@3 u u i%255 7 9; 0.05i@3 wave 1.0i@3 cos sin 0.000; "
+    "5e5+0.05i@2 north cm 388721.25+1e-5i@6; 0.5i u u; i/7 i%7 i%3 i%5; i/7 i%7 cm 1 2 3; "
+    "i/7 i%7 cm cm; i/7 i%7 cm cos sin 0.0000; i/7 5i%7 cm cm cm";
 
 /// Layouts of scans: intensities, colours, normals with a curvature, and regular grids.
-const char* const kScans[] = {"m m m",
-                              "m m m 0.5",
-                              "m m m colour colour colour",
-                              "m m m -1200 colour colour colour",
-                              "m m m normal",
-                              "m m m normal 0",
-                              "m m m 0 normal",
-                              "m m m 0 normal 0",
-                              "m m m 0 normal 0.01",
-                              "m m m colour colour colour normal",
-                              "m m m 0 0 0 normal",
-                              "m m m 12 colour colour colour normal 0.01 3",
-                              "m m m m m m normal normal",
-                              "0 0 0 normal 0",
-                              "i 0 0 9",
-                              "i i 0.5 9",
-                              "1.0i@3 0.000 1.25 9",
-                              "512345.5+i 4.1 101.25",
-                              "i 0.1i@2 5.50",
-                              "i/2 0.1i@2 5.50 1 2 3",
-                              "512345.5+0.1i@3 5412345.250 12.1 i%3 1 3e8+i@4",
-                              "1 0 0 0 0 1 0 0 0 0 0.9 0"};
+constexpr const char* kScans =
+    "m m m; m m m 0.5; m m m colour colour colour; m m m -1200 colour colour colour; "
+    "m m m normal; m m m normal 0; m m m 0 normal; m m m 0 normal 0; m m m 0 normal 0.01; "
+    "m m m colour colour colour normal; m m m 0 0 0 normal; "
+    "m m m 12 colour colour colour normal 0.01 3; m m m m m m normal normal; "
+    "0 0 0 normal 0; i 0 0 9; i i 0.5 9; 1.0i@3 0.000 1.25 9; 512345.5+i 4.1 101.25; "
+    "i 0.1i@2 5.50; i/2 0.1i@2 5.50 1 2 3; 512345.5+0.1i@3 5412345.250 12.1 i%3 1 3e8+i@4; "
+    "1 0 0 0 0 1 0 0 0 0 0.9 0";
 
 void check_refused_as(const Row& row, const std::string& text) {
   try {
@@ -224,15 +202,18 @@ TEST_CASE("poses, times, numbers and grid indices before the coordinates are ref
 }
 
 TEST_CASE("scans of every usual layout, sorted or in a grid, are points") {
-  const auto check = [](const char* columns, std::initializer_list<int> counts) {
-    Table table;
-    for (const int lines : counts) {
-      INFO(columns << ", " << lines << " lines");
-      CHECK_NOTHROW(cloud_of(table.text(columns, lines)));
+  const auto check = [](const char* layouts, std::initializer_list<int> counts) {
+    std::istringstream in(layouts);
+    for (std::string columns; std::getline(in >> std::ws, columns, ';');) {
+      Table table;
+      for (const int lines : counts) {
+        INFO(columns << ", " << lines << " lines");
+        CHECK_NOTHROW(cloud_of(table.text(columns, lines)));
+      }
     }
   };
-  for (const char* columns : kSorted) check(columns, {12, 100, 250});
-  for (const char* columns : kScans) check(columns, {1, 2, 3, 10, 100, 250});
+  check(kSorted, {12, 100, 250});
+  check(kScans, {1, 2, 3, 10, 100, 250});
 }
 
 TEST_CASE("three columns have to be chosen") {

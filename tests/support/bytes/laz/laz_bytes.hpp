@@ -52,25 +52,27 @@ struct LazBytes {
   }
   /// Where each chunk begins.
   std::vector<std::uint64_t> chunk_begins() const {
-    std::vector<std::uint64_t> begins;
-    std::uint64_t at = points_offset() + 8;
-    for (std::size_t begin = 0, i = 0; begin < points.size(); ++i) {
-      const std::size_t end = chunk_end(begin, i);
-      begins.push_back(at);
-      at += chunk(begin, end).size();
-      begin = end;
-    }
+    std::vector<std::uint64_t> begins{points_offset() + 8};
+    for (const auto& [count, bytes] : divided()) begins.push_back(begins.back() + bytes.size());
+    begins.pop_back();
     return begins;
   }
 
  private:
-  std::size_t chunk_end(std::size_t begin, std::size_t number) const {
-    const std::size_t size =
-        variable ? (number < chunks.size() ? chunks[number] : points.size()) : chunks[0];
-    return std::min(points.size(), begin + size);
-  }
-  std::string chunk(std::size_t begin, std::size_t end) const {
-    return layered() ? layered_chunk(begin, end) : pointwise_chunk(begin, end);
+  using Chunks = std::vector<std::pair<std::uint32_t, std::string>>;
+
+  /// The number of points and the bytes of each chunk.
+  Chunks divided() const {
+    Chunks all;
+    for (std::size_t begin = 0, end; begin < points.size(); begin = end) {
+      const std::size_t size = !variable                    ? chunks[0]
+                               : all.size() < chunks.size() ? chunks[all.size()]
+                                                            : points.size();
+      end = std::min(points.size(), begin + size);
+      all.emplace_back(end - begin,
+                       layered() ? layered_chunk(begin, end) : pointwise_chunk(begin, end));
+    }
+    return all;
   }
   bool layered() const { return las.format >= 6; }
 
@@ -80,24 +82,23 @@ struct LazBytes {
   }
 
   std::string scheme() const {
-    std::vector<std::array<std::uint16_t, 3>> items{layered()
-                                                        ? std::array<std::uint16_t, 3>{10, 30, 3}
-                                                        : std::array<std::uint16_t, 3>{6, 20, 2}};
-    if (las.format == 1 || las.format == 3) items.push_back({7, 8, 2});
-    if (las.format == 2 || las.format == 3) items.push_back({8, 6, 2});
-    if (las.format == 7) items.push_back({11, 6, 3});
-    if (las.format == 8) items.push_back({12, 8, 3});
-    if (las.extra_bytes > 0) {
-      items.push_back({static_cast<std::uint16_t>(layered() ? 14 : 0),
-                       static_cast<std::uint16_t>(las.extra_bytes),
-                       static_cast<std::uint16_t>(layered() ? 3 : 2)});
+    std::vector<std::array<unsigned, 3>> items;  // type, bytes and version
+    if (layered()) {
+      items = {{10, 30, 3}};
+      if (las.format > 6) items.push_back({las.format + 4, las.format == 7 ? 6u : 8u, 3});
+      if (las.extra_bytes > 0) items.push_back({14, las.extra_bytes, 3});
+    } else {
+      items = {{6, 20, 2}};
+      if (las.format % 2 == 1) items.push_back({7, 8, 2});
+      if (las.format >= 2) items.push_back({8, 6, 2});
+      if (las.extra_bytes > 0) items.push_back({0, las.extra_bytes, 2});
     }
     std::string bytes(34, '\0');
     LasBytes::put<std::uint16_t>(bytes, 0, layered() ? 3 : chunked ? 2 : 1);
     LasBytes::put(bytes, 12, variable ? 0xFFFFFFFFu : chunks.front());
     LasBytes::put(bytes, 32, static_cast<std::uint16_t>(items.size()));
     for (const auto& item : items) {
-      for (const std::uint16_t field : item) add(bytes, field);
+      for (const unsigned field : item) add(bytes, static_cast<std::uint16_t>(field));
     }
     return bytes;
   }
@@ -138,26 +139,19 @@ struct LazBytes {
   std::string layered_chunk(std::size_t begin, std::size_t end) const {
     Point14Coder coder(points[begin]);
     for (std::size_t i = begin + 1; i < end; ++i) coder.encode(points[i]);
-    const unsigned layers = 9 + (las.format == 7 ? 1 : las.format == 8 ? 2 : 0) + las.extra_bytes;
-    std::string sizes;
-    std::string bytes = coder.plane.finish();
-    add(sizes, static_cast<std::uint32_t>(bytes.size()));
-    const std::string height = coder.height.finish();
-    add(sizes, static_cast<std::uint32_t>(height.size()));
-    bytes += height;
-    const std::string classes = coder.classes_change ? coder.classes.finish() : "";
-    add(sizes, static_cast<std::uint32_t>(classes.size()));
-    bytes += classes;
-    for (unsigned i = 3; i < layers; ++i) {
-      std::string layer(i % 4, 'l');
-      if (i == 3) layer = coder.flags_change ? coder.flags.finish() : "";
-      if (i == 8) layer = coder.times_change ? coder.times.finish() : "";
+    std::vector<std::string> layers{coder.plane.finish(), coder.height.finish(),
+                                    coder.classes_change ? coder.classes.finish() : ""};
+    layers.resize(9 + (las.format == 7 ? 1 : las.format == 8 ? 2 : 0) + las.extra_bytes);
+    for (std::size_t i = 3; i < layers.size(); ++i) layers[i].assign(i % 4, 'l');
+    layers[3] = coder.flags_change ? coder.flags.finish() : "";
+    layers[8] = coder.times_change ? coder.times.finish() : "";
+    std::string sizes, bytes;
+    add(sizes, static_cast<std::uint32_t>(end - begin));
+    for (const std::string& layer : layers) {
       add(sizes, static_cast<std::uint32_t>(layer.size()));
       bytes += layer;
     }
-    std::string count;
-    add(count, static_cast<std::uint32_t>(end - begin));
-    return raw(points[begin]) + count + sizes + bytes;
+    return raw(points[begin]) + sizes + bytes;
   }
 
   void append_points(std::string& bytes) const {
@@ -167,31 +161,23 @@ struct LazBytes {
       return;
     }
     add(bytes, table == Table::kAtEnd ? ~std::uint64_t{0} : std::uint64_t{pointer});
-    std::vector<std::array<std::uint32_t, 2>> entries;
-    for (std::size_t begin = 0, i = 0; begin < points.size(); ++i) {
-      const std::size_t end = chunk_end(begin, i);
-      const std::string one = chunk(begin, end);
-      bytes += one;
-      entries.push_back(
-          {static_cast<std::uint32_t>(end - begin), static_cast<std::uint32_t>(one.size())});
-      begin = end;
-    }
+    const Chunks all = divided();
+    for (const auto& [count, chunk] : all) bytes += chunk;
     if (table == Table::kNone) return;
     const std::uint64_t place = bytes.size();
     if (table == Table::kAtPoints) LasBytes::put(bytes, pointer, place);
     add(bytes, std::uint32_t{0});
-    add(bytes, static_cast<std::uint32_t>(entries.size()));
+    add(bytes, static_cast<std::uint32_t>(all.size()));
     ArithmeticEncoder out;
     IntegerCoder coder(32, 2);
-    std::array<std::uint32_t, 2> last{};
-    for (const auto& entry : entries) {
-      for (unsigned k = variable ? 0 : 1; k < 2; ++k) {
-        coder.encode(out, static_cast<std::int32_t>(last[k]), static_cast<std::int32_t>(entry[k]),
-                     k);
-      }
-      last = entry;
+    std::int32_t last_count = 0, last_size = 0;
+    for (const auto& [count, chunk] : all) {
+      if (variable) coder.encode(out, last_count, static_cast<std::int32_t>(count), 0);
+      coder.encode(out, last_size, static_cast<std::int32_t>(chunk.size()), 1);
+      last_count = static_cast<std::int32_t>(count);
+      last_size = static_cast<std::int32_t>(chunk.size());
     }
-    if (!entries.empty()) bytes += out.finish();
+    if (!all.empty()) bytes += out.finish();
     if (table == Table::kAtEnd) add(bytes, place);
   }
 };

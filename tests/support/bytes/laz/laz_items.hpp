@@ -51,13 +51,15 @@ struct PositionCoder {
   }
 };
 
-/// The coders of a byte, one for each value that the byte had before.
-using CodersByValue = std::map<unsigned, SymbolCoder>;
+/// The coders of a value of so many symbols, one for each context, such as the value before.
+struct CodersByValue {
+  unsigned symbols = 256;
+  std::map<unsigned, SymbolCoder> coders = {};
 
-inline void encode_byte(ArithmeticEncoder& out, CodersByValue& coders, unsigned last,
-                        unsigned value) {
-  out.symbol(coders.try_emplace(last, 256u).first->second, value);
-}
+  void encode(ArithmeticEncoder& out, unsigned context, unsigned value) {
+    out.symbol(coders.try_emplace(context, symbols).first->second, value);
+  }
+};
 
 /// Encodes POINT10, version 2. Pulses have at most three returns, whose contexts are simple.
 class Point10Coder {
@@ -72,14 +74,14 @@ class Point10Coder {
                              (point.user_data != last.user_data ? 2 : 0) +
                              (point.source != last.source ? 1 : 0);
     out.symbol(changed_, changed);
-    if (changed & 32) encode_byte(out, bits_, bits_of(last), bits_of(point));
+    if (changed & 32) bits_.encode(out, bits_of(last), bits_of(point));
     if (changed & 16) {
       intensity_.encode(out, intensities_[map], point.intensity, std::min(map, 3u));
       intensities_[map] = point.intensity;
     }
-    if (changed & 8) encode_byte(out, class_, last.classification, point.classification);
+    if (changed & 8) class_.encode(out, last.classification, point.classification);
     if (changed & 4) out.symbol(angle_, static_cast<std::uint8_t>(point.angle - last.angle));
-    if (changed & 2) encode_byte(out, user_data_, last.user_data, point.user_data);
+    if (changed & 2) user_data_.encode(out, last.user_data, point.user_data);
     if (changed & 1) source_.encode(out, last.source, point.source, 0);
     position_.encode(out, out, last, point, map, level);
   }
@@ -221,18 +223,17 @@ class Point14Coder {
       current_ = point.channel;
       channel = &channels_.at(current_);
     }
-    if (point.returns != last.returns) encode_16(channel->returns, last.returns, point.returns);
-    if (kind == 3 && time) encode_16(channel->number, last.number, point.number);
+    if (point.returns != last.returns) channel->returns.encode(plane, last.returns, point.returns);
+    if (kind == 3 && time) channel->number.encode(plane, last.number, point.number);
     if (kind == 3 && !time) plane.symbol(channel->number_same_time, step - 2);
     const unsigned map = 2 * (point.returns * (point.returns - 1) / 2 + point.number - 1);
     channel->position.encode(plane, height, last, point, map + (time ? 1 : 0),
                              point.returns - point.number);
     const unsigned single = point.number == 1 && point.returns == 1 ? 1 : 0;
-    classes.symbol(
-        channel->classes.try_emplace((last.classification & 31u) * 2 + single, 256u).first->second,
-        point.classification);
+    channel->classes.encode(classes, (last.classification & 31u) * 2 + single,
+                            point.classification);
     classes_change = classes_change || point.classification != last.classification;
-    flags.symbol(channel->flags.try_emplace(last.flags, 64u).first->second, point.flags);
+    channel->flags.encode(flags, last.flags, point.flags);
     flags_change = flags_change || point.flags != last.flags;
     if (time) channel->gps_time.front().encode(times, point.gps_time);
     times_change = times_change || time;
@@ -250,8 +251,7 @@ class Point14Coder {
     bool time_changed = false;
     std::vector<SymbolCoder> changed = std::vector<SymbolCoder>(8, SymbolCoder(128));
     SymbolCoder next_channel{3}, number_same_time{13};
-    std::map<unsigned, SymbolCoder> returns, number;
-    CodersByValue classes, flags;
+    CodersByValue returns{16}, number{16}, classes, flags{64};
     PositionCoder position;
     std::vector<GpsTimeCoder> gps_time;  ///< one, since the channel began
   };
@@ -261,9 +261,6 @@ class Point14Coder {
     started.last = last;
     started.position.heights.fill(last.position[2]);
     started.gps_time.emplace_back(last.gps_time, true);
-  }
-  void encode_16(std::map<unsigned, SymbolCoder>& coders, unsigned last, unsigned value) {
-    plane.symbol(coders.try_emplace(last, 16u).first->second, value);
   }
 
   std::map<unsigned, Channel> channels_;

@@ -51,30 +51,31 @@ inline LazBytes laz_bytes(unsigned format, std::size_t count) {
   return laz;
 }
 
+/// What read(point) gives for each point.
+template <typename Read>
+auto each_of(const std::vector<LazPoint>& points, Read read) {
+  std::vector<std::decay_t<decltype(read(points[0]))>> values;
+  for (const LazPoint& point : points) values.push_back(read(point));
+  return values;
+}
+
 inline std::vector<std::array<std::int32_t, 3>> positions_of(const std::vector<LazPoint>& points) {
-  std::vector<std::array<std::int32_t, 3>> positions;
-  for (const LazPoint& point : points) positions.push_back(point.position);
-  return positions;
+  return each_of(points, [](const LazPoint& point) { return point.position; });
 }
 
 inline std::vector<std::uint8_t> classes_of(const LazBytes& laz) {
-  std::vector<std::uint8_t> classes;
-  for (const LazPoint& point : laz.points) {
-    classes.push_back(
-        static_cast<std::uint8_t>(point.classification & (laz.las.format < 6 ? 31 : 255)));
-  }
-  return classes;
+  return each_of(laz.points, [&](const LazPoint& point) -> std::uint8_t {
+    return laz.las.format < 6 ? point.classification & 31 : point.classification;
+  });
 }
 
 /// The flags of the points, as bits of PointFlags.
 inline std::vector<std::uint8_t> flags_of(const LazBytes& laz) {
-  std::vector<std::uint8_t> flags;
-  for (const LazPoint& point : laz.points) {
-    const unsigned overlap = (point.classification & 31) == 12 ? 8 : 0;
-    flags.push_back(static_cast<std::uint8_t>(
-        laz.las.format < 6 ? point.classification >> 5 | overlap : point.flags));
-  }
-  return flags;
+  return each_of(laz.points, [&](const LazPoint& point) -> std::uint8_t {
+    if (laz.las.format >= 6) return point.flags;
+    const int overlap = (point.classification & 31) == 12 ? 8 : 0;
+    return static_cast<std::uint8_t>(point.classification >> 5 | overlap);
+  });
 }
 
 constexpr unsigned kLazFormats[] = {0, 1, 2, 3, 6, 7, 8};
