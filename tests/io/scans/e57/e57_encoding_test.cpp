@@ -60,7 +60,7 @@ TEST_CASE(
       {{0, 0, kAll}, {0, kAll, 0}},
       std::vector<std::vector<std::size_t>>(900, {1, 0, 0})};
   for (unsigned width = 0; width <= 64; ++width) {
-    const std::size_t count = width % 10 == 3 ? 5000 : 70;
+    const std::size_t count = width % 10 == 3 ? 3000 : 70;
     Integers minima{kLeast};
     if (width < 64) minima.insert(minima.end(), {0, -5, -(std::int64_t{1} << (width / 2))});
     for (const std::int64_t minimum : minima) {
