@@ -2,7 +2,6 @@
 #include "support/bytes/e57_bytes.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
-#include "support/bytes/pcd_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
@@ -53,51 +52,6 @@ TEST_CASE("what is not read is refused by the name of its format, with advice") 
       {"c.shp", std::string("\0\0\x27\x0A\0\0", 6), "is a shapefile ... as CSV or LAS"},
       {"c.gpkg", std::string("SQLite format 3\0", 16), "is a GeoPackage"}};
   for (const auto& [name, bytes, words] : rows) check_says(refusal_of_file(name, bytes), words);
-}
-
-TEST_CASE("the points of many batches arrive in their order, twice") {
-  constexpr int kPoints = 150'001;
-  LasBytes las;
-  las.scale = {1, 1, 1};
-  las.offset = {0, 0, 0};
-  las.points.clear();
-  std::string rows, ply_rows, columns;
-  for (int i = 0; i < kPoints; ++i) {
-    las.points.push_back({i, -i, 2 * i});
-    ply_rows += 'a';
-    for (const int k : {1, -1, 2}) rows += raw(static_cast<float>(k * i));
-    ply_rows += rows.substr(rows.size() - 12);
-  }
-  for (const int k : {1, -1, 2}) {
-    for (int i = 0; i < kPoints; ++i) columns += raw(static_cast<float>(k * i));
-  }
-  LasBytes longer = las;
-  longer.extra_bytes = 3;
-  PcdHeaderText pcd;
-  pcd.width = pcd.points = std::to_string(kPoints);
-  const std::pair<const char*, std::string> files[] = {
-      {"a.las", las.build()},
-      {"b.las", longer.build()},
-      {"a.pcd", pcd.build("binary") + rows},
-      {"b.pcd", pcd.build("binary_compressed") + compressed(columns)},
-      {"a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex " + pcd.points +
-                    "\nproperty uchar a\nproperty float x\nproperty float y\nproperty float z\n"
-                    "end_header\n" +
-                    ply_rows}};
-  const ScratchFolder scratch;
-  for (const auto& [name, bytes] : files) {
-    INFO(name);
-    const auto reader = open_point_file(scratch.write(name, bytes));
-    for (int pass = 0; pass < 2; ++pass) {
-      const ReadCloud cloud = read_all(*reader);
-      REQUIRE(cloud.size() == kPoints);
-      for (int i = 0; i < kPoints; ++i) {
-        const Vec3 expected{1.0 * i, -1.0 * i, 2.0 * i};
-        if (cloud.at(static_cast<std::size_t>(i)) != expected) FAIL("point " << i);
-      }
-      reader->rewind();
-    }
-  }
 }
 
 TEST_CASE("what is left out of a folder is said, poses of 3DTK scans are not left out") {
