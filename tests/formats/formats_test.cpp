@@ -152,6 +152,44 @@ std::string e57_after(const std::string& edit, bool index_packets) {
   return E57Bytes::paged(bytes);
 }
 
+/// E57 scans in words; see e57.case.
+std::string e57_scans(const std::string& text) {
+  static const Names kNames{{"X", "cartesianX"},         {"Y", "cartesianY"},
+                            {"Z", "cartesianZ"},         {"CS", "cartesianInvalidState"},
+                            {"R", "sphericalRange"},     {"A", "sphericalAzimuth"},
+                            {"E", "sphericalElevation"}, {"SS", "sphericalInvalidState"}};
+  E57Bytes file;
+  for (const std::string& words : split(text, " || ")) {
+    E57Bytes::Scan& scan = file.scans.emplace_back();
+    for (const std::string& field : split(words, "; ")) {
+      std::istringstream in(field);
+      std::string name, type;
+      in >> name >> type;
+      if (name == "xml") {
+        scan.xml = field.substr(4);
+        continue;
+      }
+      Numbers values;
+      for (std::string number; in >> number;) values.push_back(std::stod(number));
+      if (const auto found = kNames.find(name); found != kNames.end()) name = found->second;
+      if (type == "f64") {
+        scan.fields.push_back(E57Bytes::float64(name, values));
+      } else if (type == "f32") {
+        scan.fields.push_back(E57Bytes::float32(name, {values.begin(), values.end()}));
+      } else {
+        const std::size_t star = type.find('*'), plus = type.find('+');
+        std::string more;
+        if (star != type.npos) more = "scale=\"" + type.substr(star + 1, plus - star - 1) + "\"";
+        if (plus != type.npos) more += " offset=\"" + type.substr(plus + 1) + "\"";
+        scan.fields.push_back(E57Bytes::integer(name, std::stoll(type),
+                                                std::stoll(type.substr(type.find("..") + 2)),
+                                                {values.begin(), values.end()}, more));
+      }
+    }
+  }
+  return file.build();
+}
+
 /// crs: the system whose map has the scale at the place; names an error only where it is a map.
 Facts crs_facts(const CrsUnits& units, const std::string& unread, const std::string& crs, double x,
                 double y) {
@@ -228,7 +266,8 @@ Facts read_file(const FormatCase& one, const std::filesystem::path& path) {
     if (kind == "geotiff") return read_geotiff(one.bytes);
     if (kind == "pose" || kind == "frames") return read_pose(path, kind == "frames");
     if (kind.starts_with("e57")) {
-      put_bytes(path, e57_after(one.bytes, kind.ends_with("packets")));
+      put_bytes(path, kind.ends_with("scans") ? e57_scans(one.bytes)
+                                              : e57_after(one.bytes, kind.ends_with("packets")));
     }
     const std::string columns = one.setting("columns");
     return read_points(path,

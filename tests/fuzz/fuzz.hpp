@@ -18,7 +18,17 @@ using Bytes = std::span<const std::uint8_t>;
 
 /// What fuzz_NAME does with any bytes.
 using Targets = std::map<std::string, void (*)(Bytes)>;
-extern const Targets kScanTargets, kTextTargets, kStoreTargets;
+
+/// The targets of the program.
+inline Targets& targets() {
+  static Targets all;
+  return all;
+}
+
+inline bool add_targets(Targets more) {
+  targets().merge(more);
+  return true;
+}
 
 inline void require(bool condition) {
   if (!condition) std::abort();

@@ -1,4 +1,4 @@
-// The fuzz targets: one program with a name for each of them.
+// A program of several fuzz targets, with a name for each of them.
 #include "fuzz.hpp"
 
 using namespace clearway::test;
@@ -11,10 +11,7 @@ void (*target)(Bytes) = nullptr;
 
 extern "C" int LLVMFuzzerInitialize(int*, char*** argv) {
   const std::string name = std::filesystem::path((*argv)[0]).filename().string().substr(5);
-  for (const Targets* targets : {&kScanTargets, &kTextTargets, &kStoreTargets}) {
-    if (targets->contains(name)) target = targets->at(name);
-  }
-  require(target != nullptr);
+  target = targets().at(name);
   return 0;
 }
 

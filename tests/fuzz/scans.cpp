@@ -224,9 +224,14 @@ void read_mesh_bytes(Bytes bytes) {
   });
 }
 
-}  // namespace
+const bool kAdded = add_targets({{"e57", read_e57_bytes},
+                                 {"las", read_las_bytes},
+                                 {"las_records", copy_las_records},
+                                 {"laz", read_laz_bytes},
+                                 {"mesh", read_mesh_bytes},
+                                 {"pcd", read_lines<read_pcd>},
+                                 {"ply", read_lines<read_ply>},
+                                 {"ptx", read_ptx_bytes},
+                                 {"xyz", read_xyz_bytes}});
 
-const Targets clearway::test::kScanTargets{
-    {"e57", read_e57_bytes},       {"las", read_las_bytes},   {"las_records", copy_las_records},
-    {"laz", read_laz_bytes},       {"mesh", read_mesh_bytes}, {"pcd", read_lines<read_pcd>},
-    {"ply", read_lines<read_ply>}, {"ptx", read_ptx_bytes},   {"xyz", read_xyz_bytes}};
+}  // namespace

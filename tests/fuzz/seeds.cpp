@@ -29,7 +29,7 @@ class Seeds {
     std::filesystem::create_directories(folder_ / target);
     return folder_ / target / std::to_string(counts_[target]++);
   }
-  void add(const std::string& target, std::initializer_list<int> first, const std::string& rest) {
+  void add(const std::string& target, const std::vector<int>& first, const std::string& rest) {
     std::string bytes;
     for (const int byte : first) bytes += static_cast<char>(byte);
     put_bytes(next(target), bytes + rest);
@@ -103,7 +103,7 @@ void write_e57(Seeds& seeds) {
 
 /// Writes the files of tests/formats, which are of one target for each reader and ending.
 void write_cases(Seeds& seeds) {
-  const std::map<std::string, std::pair<const char*, std::initializer_list<int>>> targets{
+  const std::map<std::string, std::pair<const char*, std::vector<int>>> targets{
       {"points.ply", {"ply", {}}},  {"points.pcd", {"pcd", {}}}, {"points.ptx", {"ptx", {0}}},
       {"points.pts", {"ptx", {1}}}, {"points.3d", {"ptx", {3}}}, {"pose.3d", {"ptx", {4}}},
       {"frames.3d", {"ptx", {5}}},  {"points.csv", {"xyz", {}}}, {"mesh.stl", {"mesh", {0}}},
@@ -136,7 +136,7 @@ void write_points(Seeds& seeds) {
 
 void write_texts(Seeds& seeds) {
   const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
-  const std::tuple<const char*, std::initializer_list<int>, std::string> rows[] = {
+  const std::tuple<const char*, std::vector<int>, std::string> rows[] = {
       {"trajectory", {0, 0}, "# c\n" + matrix + "\n" + matrix + "\n"},
       {"trajectory", {1, 108}, matrix + " 0 0 0 1\n// c\n"},
       {"trajectory", {2, 54}, "1.5 1 2 3 0 0 0 1\n"},

@@ -327,35 +327,31 @@ void write_payloads(const std::filesystem::path& path, Bytes bytes) {
   }
 }
 
-void check_result(const SearchResult& answer, const Query& query) {
+/// What the answer says of each point and of each pose, after checks that it belongs to the cloud.
+std::vector<std::array<double, 4>> checked(const SearchResult& answer, const Query& query) {
+  std::vector<std::array<double, 4>> all;
   for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
-    if (answer.hits.contains(slot)) {
-      require(cloud().is_used(slot));
-      require(!query.first_pose || answer.hits.first_pose(slot) < query.poses.size());
+    std::array<double, 4>& one = all.emplace_back();
+    const bool hit = answer.hits.contains(slot);
+    if (hit) one[0] = 1 + (query.first_pose ? answer.hits.first_pose(slot) : 0);
+    require(one[0] <= static_cast<double>(query.poses.size()));
+    const bool near = query.clearance > 0 && answer.clearances.at(slot).found();
+    if (near) {
+      const auto& clearance = answer.clearances.at(slot);
+      one[1] = clearance.squared;
+      one[2] = 1 + clearance.pose;
+      require(clearance.squared >= 0 && clearance.pose < query.poses.size());
     }
-    if (query.clearance > 0 && answer.clearances.at(slot).found()) {
-      require(cloud().is_used(slot) && answer.clearances.at(slot).squared >= 0);
-      require(answer.clearances.at(slot).pose < query.poses.size());
-    }
+    require(cloud().is_used(slot) || !(hit || near));
   }
   for (std::uint64_t pose = 0; pose < answer.profile.poses(); ++pose) {
     const ProfilePoint point = answer.profile.at(pose);
     if (!point.found()) continue;
     require(cloud().is_used(point.entry) && point.squared >= 0);
     require(cloud().source(point.entry) == point.source);
+    all.push_back({static_cast<double>(pose), static_cast<double>(point.entry), point.squared});
   }
-}
-
-bool same(const SearchResult& a, const SearchResult& b, const Query& query) {
-  for (std::uint64_t slot = 0; slot < cloud().entry_count(); ++slot) {
-    if (a.hits.contains(slot) != b.hits.contains(slot)) return false;
-    if (query.first_pose && a.hits.first_pose(slot) != b.hits.first_pose(slot)) return false;
-    if (query.clearance > 0 && a.clearances.at(slot) != b.clearances.at(slot)) return false;
-  }
-  for (std::uint64_t pose = 0; pose < a.profile.poses(); ++pose) {
-    if (a.profile.at(pose) != b.profile.at(pose)) return false;
-  }
-  return true;
+  return all;
 }
 
 SearchResult restored(const SearchJournal& journal, const Query& query) {
@@ -367,8 +363,7 @@ SearchResult restored(const SearchJournal& journal, const Query& query) {
 /// Restores a journal that could be opened and continues from it; nothing of that may be refused.
 void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJournal& journal,
            const Query& query) {
-  const SearchResult before = restored(journal, query);
-  check_result(before, query);
+  const auto before = checked(restored(journal, query), query);
   const CellRows none{.words = std::vector<std::uint64_t>(cloud().blocks_per_cell())};
   std::uint32_t open = 0;  // the first cell whose colliding points are not known
   while (open < cloud().cells().size() && journal.rows().answered(open, PointQuestion::kHits)) {
@@ -381,7 +376,7 @@ void go_on(const std::filesystem::path& path, const JournalReader& read, SearchJ
   require(again.identity() == read.identity());
   const SearchJournal longer(path, kIdentity, &again, cloud(), query, kNever);
   require(longer.rows().answered(open, PointQuestion::kHits));
-  require(same(restored(longer, query), before, query));
+  require(checked(restored(longer, query), query) == before);
 }
 
 /// A journal: either it is refused, or what it says belongs to the cloud and the query, and a run
@@ -412,10 +407,10 @@ void read_journal_bytes(Bytes input) {
   if (journal) go_on(file.path(), *read, *journal, query);
 }
 
-}  // namespace
+const bool kAdded = add_targets({{"journal", read_journal_bytes},
+                                 {"packed_chunk", read_chunk_bytes},
+                                 {"result", read_result_bytes},
+                                 {"store", read_store_bytes},
+                                 {"store_values", edit_store}});
 
-const Targets clearway::test::kStoreTargets{{"journal", read_journal_bytes},
-                                            {"packed_chunk", read_chunk_bytes},
-                                            {"result", read_result_bytes},
-                                            {"store", read_store_bytes},
-                                            {"store_values", edit_store}};
+}  // namespace

@@ -126,9 +126,9 @@ void read_json_bytes(Bytes bytes) {
   });
 }
 
-}  // namespace
+const bool kAdded = add_targets({{"alignment", read_alignment_bytes},
+                                 {"json", read_json_bytes},
+                                 {"line", read_line_bytes},
+                                 {"trajectory", read_trajectory_bytes}});
 
-const Targets clearway::test::kTextTargets{{"alignment", read_alignment_bytes},
-                                           {"json", read_json_bytes},
-                                           {"line", read_line_bytes},
-                                           {"trajectory", read_trajectory_bytes}};
+}  // namespace

@@ -103,4 +103,23 @@ struct LasBytes {
   }
 };
 
+/// A file for each way in which LAS begins and ends its points.
+inline std::vector<LasBytes> las_samples() {
+  const auto of = [](unsigned minor, unsigned format) {
+    LasBytes las;
+    las.minor = minor;
+    las.format = format;
+    las.vlrs = {{"someone", 7, "payload"}, {"LASF_Projection", 2112, "LOCAL_CS[\"a\"]"}};
+    return las;
+  };
+  std::vector<LasBytes> all{of(0, 1), of(2, 3), of(3, 4), of(4, 6), of(4, 7)};
+  all[0].padding = 2;
+  all[1].extra_bytes = 7;
+  all[2].global_encoding = 2;
+  all[2].evlrs = {{"LASF_Spec", 65535, "waveforms"}};
+  all[4].vlrs.pop_back();
+  all[4].evlrs = {{"someone", 1, "payload"}, {"LASF_Projection", 2112, "LOCAL_CS[\"b\"]"}};
+  return all;
+}
+
 }  // namespace clearway::test

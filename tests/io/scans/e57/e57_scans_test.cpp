@@ -1,8 +1,4 @@
-// Scans, poses, spherical coordinates, records without a point, and damage; what a header or XML
-// must not say is in tests/formats/e57.case.
-#include <chrono>
-#include <cmath>
-
+// E57 of many records, damaged, and with scans that cannot be put into tests/formats/e57.case.
 #include "support/bytes/e57_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -28,17 +24,6 @@ E57Bytes one_scan() {
   return file;
 }
 
-/// A scan of spherical coordinates with their states.
-E57Bytes spherical(const std::vector<double>& range, const std::vector<double>& azimuth,
-                   const std::vector<double>& elevation, const Integers& state) {
-  E57Bytes file;
-  file.scans.emplace_back().fields = {E57Bytes::float64("sphericalRange", range),
-                                      E57Bytes::float64("sphericalAzimuth", azimuth),
-                                      E57Bytes::float64("sphericalElevation", elevation),
-                                      E57Bytes::integer("sphericalInvalidState", 0, 2, state)};
-  return file;
-}
-
 std::string all_texts(const CloudInfo& info) {
   std::string all;
   for (const Message& message : info.remarks) all += message.text + "\n";
@@ -55,83 +40,7 @@ std::string replaced(const E57Bytes& file, const std::string& old, const std::st
   return E57Bytes::paged(bytes);
 }
 
-const std::string kHalf = "7.0710678118654752e-1";
-
 }  // namespace
-
-TEST_CASE("each scan's pose turns and then shifts its points, in the order of the file") {
-  E57Bytes file;
-  file.scans = {e57_scan({1, 0}, {2, 0}, {3, 1}), e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3}),
-                e57_scan({1}, {2}, {3}), e57_scan({1}, {2}, {3})};
-  // A quarter turn about z: x to y, y to -x.
-  file.scans[0].xml = E57Bytes::pose({kHalf, "", "", kHalf}, {"400000", "5e6", "-1.5"});
-  // A quarter turn about x: y to z, z to -y.
-  file.scans[1].xml = E57Bytes::pose({kHalf, kHalf, "0", "0"}, {"0", "0", "0"});
-  file.scans[2].xml = "<pose type=\"Structure\"/>";
-  // A quaternion is normalised.
-  file.scans[3].xml = E57Bytes::pose({"0.707", "0", "0", "0.707"}, {"0", "0", "0"});
-  const ReadCloud all = read_scans(file);
-  const std::vector<Vec3> expected{{399998, 5000001, 1.5},
-                                   {400000, 5000000, -0.5},
-                                   {1, -3, 2},
-                                   {1, 2, 3},
-                                   {-2, 1, 3},
-                                   {1, 2, 3}};
-  REQUIRE(all.positions.size() == expected.size());
-  for (std::size_t i = 0; i < 6; ++i) check_near(all.positions[i], expected[i], 1e-9);
-  CHECK(all.positions[3] == expected[3]);
-  check_equal(all.info.declared_points, 6);
-  check_says(all_texts(all.info), "5 scans; 4 poses are applied");
-}
-
-TEST_CASE("spherical coordinates are range, azimuth from x to y, elevation from the plane to z") {
-  const double quarter = std::acos(0.0);
-  const ReadCloud all =
-      read_scans(spherical({2, 2, 2, 2, 2}, {0, quarter, 0, quarter / 2, -quarter},
-                           {0, 0, quarter, -quarter / 2, 0}, {0, 0, 0, 0, 1}));
-  const std::vector<Vec3> expected{{2, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 1, -std::sqrt(2.0)}};
-  REQUIRE(all.positions.size() == 5);
-  for (std::size_t i = 0; i < 4; ++i) check_near(all.positions[i], expected[i], 1e-12);
-  CHECK(std::isnan(all.positions[4].x));
-  check_equal(all.absent, {4});
-}
-
-TEST_CASE("angles beyond their range are refused, unless their record is invalid") {
-  const auto file_of = [](double azimuth, double elevation, int state) {
-    return spherical({2, 2}, {0, azimuth}, {0, elevation}, {0, state});
-  };
-  check_says(refusal(file_of(7, 0, 0).build()),
-             "scan 1, record 1 (counted from 0): azimuth 7; expected an angle up to "
-             "6.28318531, as E57 has radians, not degrees");
-  check_says(refusal(file_of(-90, 0, 0).build()), "azimuth -90");
-  check_says(refusal(file_of(0, 3.2, 0).build()), "record 1 ... elevation 3.2");
-  check_equal(read_scans(file_of(90, 90, 2)).positions.size(), 2);
-  check_equal(read_scans(file_of(-6.2832, 1.6, 0)).positions.size(), 2);
-}
-
-TEST_CASE("the Cartesian coordinates count where they are valid, then the spherical ones") {
-  E57Bytes file = spherical({9, 9, 9, 9}, {0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0});
-  file.scans[0].fields.pop_back();
-  const auto cartesian = e57_scan({1, 2, 3, 4}, {0, 0, 0, 0}, {0, 0, 0, 0}).fields;
-  file.scans[0].fields.insert(file.scans[0].fields.begin(), cartesian.begin(), cartesian.end());
-  const ReadCloud without = read_scans(file);  // states: all are valid
-  check_equal(without.positions[3].x, 4);
-  CHECK(without.absent.empty());
-  // States count whatever numbers they are.
-  file.scans[0].fields.push_back(E57Bytes::float32("cartesianInvalidState", {0, 1, 2, 2}));
-  file.scans[0].fields.push_back(E57Bytes::integer("sphericalInvalidState", -1, 2, {2, 0, 0, 1}));
-  const ReadCloud all = read_scans(file);
-  for (const auto& [point, x] : {std::pair(0, 1), {1, 9}, {2, 9}}) {
-    check_equal(all.positions[static_cast<std::size_t>(point)].x, x);
-  }
-  CHECK(std::isnan(all.positions[3].x));
-  check_equal(all.absent, {3});
-  REQUIRE(codes_of(all.info.remarks).starts_with("note "));
-  check_says(all_texts(all.info), "1 of 4 records have no valid point");
-  E57Bytes beyond = one_scan();
-  beyond.scans[0].fields.push_back(E57Bytes::integer("cartesianInvalidState", 0, 3, {0, 3}));
-  check_says(refusal(beyond.build()), "scan 1, record 1 ... state 3");
-}
 
 TEST_CASE("absent records and remarks are those of the whole file, after every rewind") {
   constexpr std::size_t kCount = 70'000;
@@ -165,19 +74,11 @@ TEST_CASE("absent records and remarks are those of the whole file, after every r
   }
 }
 
-TEST_CASE("scans without points or coordinates are stepped over, and said") {
+TEST_CASE("a file without scans, and a scan without a binary section, hold no points") {
   E57Bytes file;
   check_equal(read_scans(file).info.declared_points, 0);
   file.scans = {e57_scan({}, {}, {})};
   check_equal(refusal(replaced(file, "fileOffset=\"48\"", "fileOffset=\"0\"")), "");
-  file.scans.push_back(e57_scan({1}, {2}, {3}));
-  file.scans.emplace_back().fields = {E57Bytes::integer("colorRed", 0, 255, {1, 2, 3})};
-  const ReadCloud all = read_scans(file);
-  check_equal(all.positions.size(), 1);
-  check_equal(all.info.declared_points, 1);
-  check_says(all_texts(all.info),
-             "3 scans; none has a pose ... 1 scan without points, of 3 ... 1 scan without "
-             "coordinates, of 3");
 }
 
 TEST_CASE("points far beyond the declared bounds are warned of, in either frame") {
@@ -214,23 +115,6 @@ TEST_CASE("points far beyond the declared bounds are warned of, in either frame"
   };
   check(bounds("-6000", "-2000") + posed("-7000"), "note ", "pose");
   check(bounds("0", "5000") + posed("-1e6"), "note ", "pose");
-}
-
-TEST_CASE("coordinates at an end of 32-bit integers are cut off, and a single one is not") {
-  const auto remarks = [](const Integers& y, std::int64_t greatest) {
-    E57Bytes file;
-    const std::vector<double> others(y.size());
-    file.scans = {e57_scan(others, others, others)};
-    file.scans[0].fields[1] =
-        E57Bytes::integer("cartesianY", -2147483648, greatest, y, "scale=\"0.001\" offset=\"5\"");
-    return read_scans(file).info.remarks;
-  };
-  constexpr std::int64_t kEnd = 2147483647;
-  const std::vector<Message> cut = remarks({1, kEnd, -2147483648, kEnd, kEnd, 7}, kEnd);
-  REQUIRE(codes_of(cut) == "cut-off");
-  check_says(cut[0].text, "scan 1 ... 3 points at the greatest y");
-  CHECK(remarks({1, kEnd, -2147483648, 7}, kEnd).empty());
-  CHECK(remarks({1, kEnd, kEnd, 7}, 2 * kEnd).empty());
 }
 
 TEST_CASE("a flipped bit of an E57 file or a cut is refused, a byte with a right checksum may be") {
@@ -293,16 +177,6 @@ TEST_CASE("records of few bits or of none are counted") {
   nothing.scans.push_back(nothing.scans[0]);
   CHECK(refusal_with(nothing, "65534").empty());
   check_says(refusal_with(nothing, "65535"), "scan 2 has 2 records that take no byte");
-}
-
-TEST_CASE("a bytestream that has less or more than the records need is refused") {
-  std::vector<E57Bytes> files(4, one_scan());
-  files[0].scans[0].fields[1].stored.pop_back();
-  files[1].scans[0].fields[1].stored.push_back(0);
-  // Of a field that is not read
-  files[2].scans[0].fields.push_back(E57Bytes::float32("intensity", {1}));
-  files[3].scans[0].fields.push_back(E57Bytes::float32("intensity", {1, 2, 3}));
-  for (const E57Bytes& file : files) check_says(refusal(file.build()), "byte 48: ... scan 1");
 }
 
 TEST_CASE("a packet that restarts within a record is refused, at a record's end it is read") {

@@ -39,23 +39,6 @@ CloudInfo info_of(const std::vector<LasBytes::Record>& vlrs) {
   return open_point_file(scratch.write("a.las", las.build()))->info();
 }
 
-/// A file for each way in which LAS ends its points.
-std::vector<LasBytes> samples() {
-  std::vector<LasBytes> all(5);
-  all[0].format = 3;
-  all[1].extra_bytes = 7;
-  all[2].minor = 3;
-  all[2].format = 4;
-  all[2].global_encoding = 2;
-  all[2].evlrs = {{"LASF_Spec", 65535, "waveforms"}};
-  all[3].minor = 4;
-  all[3].format = 6;
-  all[4].minor = 4;
-  all[4].format = 7;
-  all[4].evlrs = {{"someone", 1, "payload"}, projection("LOCAL_CS[\"b\"]")};
-  return all;
-}
-
 /// The file's bytes with another count of points in the header.
 std::string with_count(const LasBytes& las, std::uint32_t count) {
   std::string bytes = las.build();
@@ -237,7 +220,7 @@ TEST_CASE("a LAS header or record that says what cannot be is refused with its p
 // Headers of writers that crashed or wrote into a pipe declare fewer points than there are.
 TEST_CASE("more points than declared are refused in a file, and a warning in a stream") {
   const ScratchFolder scratch;
-  for (const LasBytes& las : samples()) {
+  for (const LasBytes& las : las_samples()) {
     for (const std::uint32_t count : {0u, 2u}) {
       const auto path = scratch.write("a.las", with_count(las, count));
       const std::string declares = "a.las ... declares " + std::to_string(count);
