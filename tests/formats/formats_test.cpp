@@ -287,7 +287,9 @@ void check_fact(const Facts& facts, const std::string& fact, double tolerance) {
   const std::string name = points ? "points" : fact.substr(0, blank);
   std::string words = points ? fact : fact.substr(blank);
   if (const auto text = facts.texts.find(name); text != facts.texts.end()) {
-    return check_says(text->second, words.empty() ? words : words.substr(1));
+    if (!words.empty()) words.erase(0, 1);
+    const bool is_message = name == "refused" || name == "unplaced" || name == "crs_unread";
+    return is_message ? check_says(text->second, words) : check_equal(text->second, words);
   }
   const auto found = facts.numbers.find(name);
   if (found == facts.numbers.end()) return fail_check("there is no " + name);

@@ -1,4 +1,5 @@
 // Writes small inputs of every kind, one folder a fuzz target: fuzz_seeds FOLDER.
+#include <fstream>
 #include <iostream>
 #include <map>
 
@@ -134,58 +135,22 @@ void write_points(Seeds& seeds) {
   seeds.add("mesh", {3}, ply_mesh(unit_cube(), "binary_little_endian"));
 }
 
+/// Writes the seeds of texts.case: a target and its first bytes, a bar, and the text.
 void write_texts(Seeds& seeds) {
-  const std::string matrix = "1 0 0 5 0 1 0 6 0 0 1 7";
-  const std::tuple<const char*, std::vector<int>, std::string> rows[] = {
-      {"trajectory", {0, 0}, "# c\n" + matrix + "\n" + matrix + "\n"},
-      {"trajectory", {1, 108}, matrix + " 0 0 0 1\n// c\n"},
-      {"trajectory", {2, 54}, "1.5 1 2 3 0 0 0 1\n"},
-      {"trajectory", {3, 0}, "#timestamp [ns], p_x\n1403636579758555392,1,2,3,1,0,0,0\n"},
-      {"trajectory", {4, 0}, "t,x,y,z,qx,qy,qz,qw\n1,2,3,4,0,0,0,1\n"},
-      {"trajectory",
-       {4, 0},
-       "x;y;z;r00;r01;r02;r10;r11;r12;r20;r21;r22\n1;2;3;1;0;0;0;1;0;0;0;1\n"},
-      {"trajectory",
-       {0, 0},
-       "x[mm],y[mm],z[mm],roll_deg,pitch_deg,heading_deg\n1,2,3,4,5,6\n7,8,9,1,2,300\n"},
-      {"trajectory", {0, 8}, "x y z roll pitch yaw\n1 2 3 0.4 0.5 6\n7 8 9 1 2 3\n"},
-      {"trajectory", {0, 18}, "lat,lon,height,roll_rad,pitch_rad,heading_rad\n48,9,300,0,0.1,2\n"},
-      {"trajectory", {5, 0}, "1 2 3 0 0 0 1\n"},
-      {"trajectory", {6, 0}, "1 2 3 1 0 0 0\n"},
-      {"trajectory",
-       {7, 18},
-       SbetRecord().bytes() + SbetRecord{.heading = 1, .wander = 0.1}.bytes()},
-      {"trajectory", {8, 0}, "1 2 3\n10 20 30\n"},
-      {"trajectory", {9, 0}, "1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1 2\n"},
-      {"line", {0}, "x [m],y [m],z [m],station,cant [mm]\n0,0,1,5,0\n10,0,2,15,10\n20,1,3,25,20\n"},
-      {"line", {6}, "# route\nx;y\n0;0\n10;0\n10;0\n10;10\n"},
-      {"line", {2}, R"({"type": "LineString", "coordinates": [[0, 0], [10, 0], [20, 1]]})"},
-      {"line",
-       {4},
-       R"({"type": "FeatureCollection", "crs": {"properties": {"name": "EPSG:25832"}}, )"
-       R"("features": [{"type": "Feature", "geometry": {"type": "MultiLineString", )"
-       R"("coordinates": [[[0, 0, 1], [10, 0, 2], [10, 10, 3]]]}}]})"},
-      {"json", {0}, R"({"a": [1, -2.5e3, "\u00e4\\\"", true, null, {"b": {}}], "c": [[[]]]})"},
-      {"json", {0}, R"({"a": 1, "a": 2})"},
-      {"json", {0}, std::string(65, '[') + std::string(65, ']')},
-      {"json",
-       {1},
-       R"({"bodies": [{"name": "tractor", "model": "a.ply", "at": "10cm"},)"
-       R"({"name": "wagon", "model": "b.obj", "model_unit": "mm", "pivots": [10, "-10 m"]},)"
-       R"({"name": "own", "model": "c.xyz", "trajectory": "path.txt"}]})"},
-      // The files that the campaign names exist.
-      {"json",
-       {2},
-       R"({"name": "a", "environments": {"e": "."}, "vehicles": {"v": {"model": ".",)"
-       R"("as": "solid", "unit": "mm", "spacing": 0.1, "vertices": true, "forward": "-x",)"
-       R"("up": "+z"}}, "routes": {"r": {"trajectory": ".", "environment": "e",)"
-       R"("angles": ["deg", "ned"], "lever_arm": [0, 1, 2], "chainage_start": 5}},)"
-       R"("radii": [0.1, "25cm"], "query": {"first_pose": true, "clearance": 0.3,)"
-       R"("ignore_classes": [2, 7], "ignore_boxes": [[0, 0, 0, 1, 1, 1]]},)"
-       R"("classes": [0.1, 0.3], "outputs": {"conflicts": ["csv", "bcf"], "report": true,)"
-       R"("gap": 0.3, "min_points": 5}, "limits": {"memory": "1G", "threads": 2,)"
-       R"("shard_seconds": 60, "gpus": [0]}, "slurm": ["--partition=long"]})"}};
-  for (const auto& [target, first, text] : rows) seeds.add(target, first, text);
+  std::ifstream file(std::string(CLEARWAY_FUZZ_SEEDS) + "/texts.case");
+  for (std::string line; std::getline(file, line);) {
+    const std::size_t bar = line.find(" | ");
+    if (bar == line.npos) continue;
+    std::istringstream in(line.substr(0, bar));
+    std::string target;
+    in >> target;
+    std::vector<int> first;
+    for (int byte; in >> byte;) first.push_back(byte);
+    seeds.add(target, first, unescaped(line.substr(bar + 3)));
+  }
+  seeds.add("trajectory", {7, 18},
+            SbetRecord().bytes() + SbetRecord{.heading = 1, .wander = 0.1}.bytes());
+  seeds.add("json", {0}, std::string(65, '[') + std::string(65, ']'));
 }
 
 void write_alignments(Seeds& seeds) {

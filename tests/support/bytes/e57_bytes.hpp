@@ -36,7 +36,6 @@ struct E57Bytes {
   struct Scan {
     std::vector<Field> fields;
     std::string xml;  ///< the scan's elements beside its points: pose, bounds
-    std::string codecs;
     /// Bytes of each bytestream in each packet; what is left goes into the last one.
     std::vector<std::vector<std::size_t>> packets = {};
     bool index_packets = false;  ///< whether index and ignored packets precede data packets
@@ -159,8 +158,7 @@ struct E57Bytes {
              std::to_string(physical(result.sections.back())) + "\" recordCount=\"" +
              std::to_string(scan.records()) + "\"><prototype type=\"Structure\">";
       for (const Field& field : scan.fields) xml += field.xml;
-      xml += "</prototype><codecs type=\"Vector\">" + scan.codecs + "</codecs></points>" +
-             "</vectorChild>\n";
+      xml += "</prototype><codecs type=\"Vector\"></codecs></points></vectorChild>\n";
     }
     xml += "</data3D></e57Root>\n";
     result.xml = bytes.size();
