@@ -188,9 +188,7 @@ TEST_CASE("a cut text that declares its points is refused at every byte before i
 }
 
 TEST_CASE("flipped bytes and shuffled ends never do worse than a refusal") {
-  LasBytes las;
-  las.minor = 4;
-  las.format = 6;
+  LasBytes las{.minor = 4, .format = 6};
   las.vlrs = {{"LASF_Projection", 34735, std::string("\1\0\1\0\0\0\1\0\0\4\0\0\1\0\1\0", 16)},
               {"LASF_Projection", 2112, "PROJCS[\"a\",GEOGCS[\"b\"],UNIT[\"metre\",1]]"}};
   las.evlrs = {{"LASF_Projection", 2112, "LOCAL_CS[\"b\"]"}};

@@ -29,8 +29,8 @@ struct LasBytes {
   std::vector<std::uint8_t> bytes_of_class{};  ///< one for each point, flags included; empty: any
   /// Byte 15 of each point in formats 6 to 10, whose lowest bits are flags; empty: any
   std::vector<std::uint8_t> bytes_of_flags{};
-  std::vector<Record> vlrs;
-  std::vector<Record> evlrs;  ///< 1.4: any number; 1.3: one
+  std::vector<Record> vlrs = {};
+  std::vector<Record> evlrs = {};  ///< 1.4: any number; 1.3: one
 
   unsigned record_bytes() const {
     static constexpr unsigned kBytes[] = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
@@ -106,9 +106,7 @@ struct LasBytes {
 /// A file for each way in which LAS begins and ends its points.
 inline std::vector<LasBytes> las_samples() {
   const auto of = [](unsigned minor, unsigned format) {
-    LasBytes las;
-    las.minor = minor;
-    las.format = format;
+    LasBytes las{.minor = minor, .format = format};
     las.vlrs = {{"someone", 7, "payload"}, {"LASF_Projection", 2112, "LOCAL_CS[\"a\"]"}};
     return las;
   };

@@ -51,11 +51,10 @@ std::string with_count(const LasBytes& las, std::uint32_t count) {
 
 TEST_CASE("coordinates of every version and point format are read as stored") {
   const ScratchFolder scratch;
-  LasBytes las;
-  las.minor = GENERATE(range(0u, 5u));
-  las.format = GENERATE(range(0u, 11u));
-  las.extra_bytes = GENERATE(0u, 7u);
-  las.padding = 2;
+  LasBytes las{.minor = GENERATE(range(0u, 5u)),
+               .format = GENERATE(range(0u, 11u)),
+               .extra_bytes = GENERATE(0u, 7u),
+               .padding = 2};
   las.vlrs = {{"someone", 7, "payload"}};
   const auto path = scratch.write("a.las", las.build());
   const auto from_file = open_point_file(path);
@@ -72,9 +71,7 @@ TEST_CASE("coordinates of every version and point format are read as stored") {
 
 TEST_CASE("classes of every point format are read, without the flags of formats 0 to 5") {
   const ScratchFolder scratch;
-  LasBytes las;
-  las.minor = 4;
-  las.format = GENERATE(range(0u, 11u));
+  LasBytes las{.minor = 4, .format = GENERATE(range(0u, 11u))};
   las.bytes_of_class = {2, 0xE0 | 7, 200};
   const std::vector<std::uint8_t> old{2, 7, 200 & 31};
   const std::vector<std::uint8_t>& expected = las.format < 6 ? old : las.bytes_of_class;
@@ -92,9 +89,7 @@ TEST_CASE("classes of every point format are read, without the flags of formats 
 }
 
 TEST_CASE("LAS is read from a pipe") {
-  LasBytes las;
-  las.minor = 4;
-  las.format = 6;
+  LasBytes las{.minor = 4, .format = 6};
   las.vlrs = {projection(std::string(kMetreWkt) + '\0')};
   const std::string bytes = las.build();
   int ends[2];
@@ -110,8 +105,7 @@ TEST_CASE("LAS is read from a pipe") {
 
 TEST_CASE("a file without points is valid and empty, and so is a stream") {
   const ScratchFolder scratch;
-  LasBytes las;
-  las.minor = GENERATE(0u, 3u, 4u);
+  LasBytes las{.minor = GENERATE(0u, 3u, 4u)};
   las.points.clear();
   const auto path = scratch.write("a.las", las.build());
   check_equal(read_all(path).size(), 0);
@@ -120,9 +114,7 @@ TEST_CASE("a file without points is valid and empty, and so is a stream") {
 
 TEST_CASE("a CRS in an extended record is known at once from a file, at the end from a stream") {
   const ScratchFolder scratch;
-  LasBytes las;
-  las.minor = 4;
-  las.format = 7;
+  LasBytes las{.minor = 4, .format = 7};
   las.evlrs = {{"someone", 1, std::string(1000, 'x')}, projection(std::string(kMetreWkt) + '\0')};
   const auto path = scratch.write("a.las", las.build());
   CHECK(open_point_file(path)->info().unit == LengthUnit::kMetre);
@@ -238,8 +230,7 @@ TEST_CASE("more points than declared are refused in a file, and a warning in a s
 }
 
 TEST_CASE("a stream of many points beyond its count comes in whole batches") {
-  LasBytes las;
-  las.format = 1;
+  LasBytes las{.format = 1};
   las.points.assign(150000, {7, 8, 9});
   las.points.back() = {1, 2, 3};
   const ScratchFolder scratch;
@@ -252,8 +243,7 @@ TEST_CASE("a stream of many points beyond its count comes in whole batches") {
 }
 
 TEST_CASE("bytes behind the points that are no whole record are refused as damage") {
-  LasBytes las;
-  las.format = 2;
+  LasBytes las{.format = 2};
   const ScratchFolder scratch;
   for (const std::size_t more : {1u, 25u, 27u, 51u}) {
     const auto path = scratch.write("a.las", las.build() + std::string(more, 'p'));
@@ -266,8 +256,7 @@ TEST_CASE("bytes behind the points that are no whole record are refused as damag
 }
 
 TEST_CASE("less than a record between the points and an extended record is a gap") {
-  LasBytes las;
-  las.minor = 4;
+  LasBytes las{.minor = 4};
   las.evlrs = {{"someone", 1, "payload"}};
   std::string bytes = edited(las.build(), 235, 8, las.points_end() + 3);
   bytes.insert(las.points_end(), "gap");

@@ -47,17 +47,16 @@ void check_reads(const LazBytes& laz) {
 
 TEST_CASE("LAZ holds the integers of its points, in every format and division into chunks") {
   const LazBytes laz = laz_bytes(any_format(), 3000);
-  using Counts = std::vector<std::uint32_t>;
-  for (const Counts& chunks : {Counts{1000}, {701}, {50000}}) {
-    LazBytes divided = laz;
-    divided.chunks = chunks;
-    check_reads(divided);
-    divided.table = LazBytes::Table::kAtEnd;
-    check_reads(divided);
-    divided.table = LazBytes::Table::kNone;
-    check_reads(divided);
-  }
   LazBytes other = laz;
+  for (const std::uint32_t points : {1000u, 50000u, 701u}) {
+    other.chunks = {points};
+    check_reads(other);
+  }
+  for (const auto table : {LazBytes::Table::kAtEnd, LazBytes::Table::kNone}) {
+    other.table = table;
+    check_reads(other);
+  }
+  other = laz;
   other.variable = true;
   other.chunks = {1, 700, 2, 3, 1200, 1};
   check_reads(other);
