@@ -7,11 +7,12 @@
 
 namespace clearway {
 
-AlignmentProfile::AlignmentProfile(std::vector<ProfilePoint> points) : points_(std::move(points)) {
+AlignmentProfile::AlignmentProfile(std::vector<VerticalIntersection> points)
+    : points_(std::move(points)) {
   const std::size_t last = points_.size() - 1;
   for (std::size_t i = 1; i < last; ++i) {
-    ProfilePoint& point = points_[i];
-    if (point.curve != ProfilePoint::Curve::kCircle) continue;
+    VerticalIntersection& point = points_[i];
+    if (point.curve != VerticalIntersection::Curve::kCircle) continue;
     const double a1 = std::atan(slope_after(i - 1)), a2 = std::atan(slope_after(i));
     const double tangent = point.radius * std::tan(std::abs(a2 - a1) / 2);
     point.before = tangent * std::cos(a1);
@@ -24,13 +25,13 @@ AlignmentProfile::AlignmentProfile(std::vector<ProfilePoint> points) : points_(s
   };
   begin_piece({first_station(), 0, false});
   for (std::size_t i = 1; i < last; ++i) {
-    if (points_[i].curve != ProfilePoint::Curve::kNone) begin_piece({begin_of(i), i, true});
+    if (points_[i].curve != VerticalIntersection::Curve::kNone) begin_piece({begin_of(i), i, true});
     begin_piece({end_of(i), i, false});
   }
 }
 
 double AlignmentProfile::slope_after(std::size_t point) const {
-  const ProfilePoint &from = points_[point], &to = points_[point + 1];
+  const VerticalIntersection &from = points_[point], &to = points_[point + 1];
   return (to.height - from.height) / (to.station - from.station);
 }
 
@@ -39,7 +40,7 @@ double AlignmentProfile::overlap_before(std::size_t point) const {
 }
 
 SlopedValue AlignmentProfile::on_parabola(std::size_t i, double station) const {
-  const ProfilePoint& point = points_[i];
+  const VerticalIntersection& point = points_[i];
   const double g1 = slope_after(i - 1), g2 = slope_after(i);
   const double l1 = point.before, l2 = point.after;
   const double most = l1 * l2 * (g2 - g1) / (2 * (l1 + l2));  // above or below the point itself
@@ -53,7 +54,7 @@ SlopedValue AlignmentProfile::on_parabola(std::size_t i, double station) const {
 }
 
 SlopedValue AlignmentProfile::on_circle(std::size_t i, double station) const {
-  const ProfilePoint& point = points_[i];
+  const VerticalIntersection& point = points_[i];
   const double g1 = slope_after(i - 1), g2 = slope_after(i);
   const double a1 = std::atan(g1), x = station - begin_of(i);
   const double bend = g2 > g1 ? 1 : -1;
@@ -66,13 +67,13 @@ SlopedValue AlignmentProfile::at(double station) const {
   auto next = std::upper_bound(pieces_.begin(), pieces_.end(), station,
                                [](double s, const Piece& piece) { return s < piece.begin; });
   const Piece piece = next == pieces_.begin() ? pieces_.front() : *(next - 1);
-  const ProfilePoint& point = points_[piece.point];
+  const VerticalIntersection& point = points_[piece.point];
   if (!piece.is_curve) {
     const double slope = slope_after(piece.point);
     return {point.height + slope * (station - point.station), slope};
   }
-  return point.curve == ProfilePoint::Curve::kCircle ? on_circle(piece.point, station)
-                                                     : on_parabola(piece.point, station);
+  return point.curve == VerticalIntersection::Curve::kCircle ? on_circle(piece.point, station)
+                                                             : on_parabola(piece.point, station);
 }
 
 SlopedValue along_ramp(CantRamp ramp, double share) {

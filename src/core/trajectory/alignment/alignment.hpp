@@ -16,7 +16,7 @@ struct SlopedValue {
 };
 
 /// A point of intersection of a profile, where two slopes meet, and the curve that rounds it.
-struct ProfilePoint {
+struct VerticalIntersection {
   enum class Curve {
     kNone,
     kParabola,  ///< two parabolas that meet at the point's station, or one if they are as long
@@ -33,7 +33,7 @@ struct ProfilePoint {
 class AlignmentProfile {
  public:
   /// points: at least two, with ascending stations; the first and the last have no curve.
-  explicit AlignmentProfile(std::vector<ProfilePoint> points);
+  explicit AlignmentProfile(std::vector<VerticalIntersection> points);
 
   double first_station() const { return points_.front().station; }
   double last_station() const { return points_.back().station; }
@@ -60,7 +60,7 @@ class AlignmentProfile {
   }
   double end_of(std::size_t point) const { return points_[point].station + points_[point].after; }
 
-  std::vector<ProfilePoint> points_;  ///< `before` and `after` of circles are filled in
+  std::vector<VerticalIntersection> points_;  ///< `before` and `after` of circles are filled in
   std::vector<Piece> pieces_;
 };
 

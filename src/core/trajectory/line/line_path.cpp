@@ -158,7 +158,7 @@ SlopedValue HeightCurve::at(double station) const {
 AlignmentProfile rounded_profile(const LinePlan& plan, std::span<const double> heights,
                                  double radius) {
   const std::size_t last = heights.size() - 1;
-  std::vector<ProfilePoint> points;
+  std::vector<VerticalIntersection> points;
   for (std::size_t i = 0; i <= last; ++i) points.push_back({plan.station_of(i), heights[i]});
   const auto slope_after = [&](std::size_t i) {
     return (points[i + 1].height - points[i].height) / (points[i + 1].station - points[i].station);
@@ -175,7 +175,7 @@ AlignmentProfile rounded_profile(const LinePlan& plan, std::span<const double> h
     const double room = std::max(0.0, std::min(free_after(i - 1), free_after(i)) / 2);
     const double half = std::max(arc, std::min(wanted, arc + room));
     if (!(half > 0)) continue;
-    points[i].curve = ProfilePoint::Curve::kParabola;
+    points[i].curve = VerticalIntersection::Curve::kParabola;
     points[i].before = points[i].after = half;
   }
   return AlignmentProfile(std::move(points));

@@ -373,7 +373,7 @@ class ProfileReader {
     }
     const auto numbers = xml_.numbers(node, 2, 2, "a station and a height");
     const UnitFactor metres(xml_.metres_per_unit());
-    ProfilePoint point{.station = metres(numbers[0]), .height = metres(numbers[1])};
+    VerticalIntersection point{.station = metres(numbers[0]), .height = metres(numbers[1])};
     if (kind == "ParaCurve") {
       const double length = positive(node, "length", "the level length of the curve");
       set_parabola(point, length / 2, length / 2);
@@ -390,7 +390,7 @@ class ProfileReader {
       const double radius =
           std::abs(xml_.required_length(node, "radius", "the radius of the curve"));
       if (!(radius > 0)) xml_.refuse_at(node, "has the radius 0; expected another one");
-      point.curve = ProfilePoint::Curve::kCircle;
+      point.curve = VerticalIntersection::Curve::kCircle;
       point.radius = radius;
     }
     if (!points.empty() && joins_last(node, point)) return;
@@ -402,14 +402,14 @@ class ProfileReader {
     nodes.push_back(node);
   }
 
-  std::vector<ProfilePoint> points;
+  std::vector<VerticalIntersection> points;
   std::vector<pugi::xml_node> nodes;
 
  private:
   /// Joins a PVI and the curve at it, which some programs write as two elements, to one point: the
   /// curve. Returns false where this point and the one before it are no such pair.
-  bool joins_last(pugi::xml_node node, const ProfilePoint& point) {
-    ProfilePoint& before = points.back();
+  bool joins_last(pugi::xml_node node, const VerticalIntersection& point) {
+    VerticalIntersection& before = points.back();
     const bool is_pvi = kind_of(node) == "PVI", was_pvi = kind_of(nodes.back()) == "PVI";
     if (is_pvi == was_pvi || !(std::abs(point.station - before.station) <= kSameStation)) {
       return false;
@@ -438,9 +438,9 @@ class ProfileReader {
     return length;
   }
 
-  static void set_parabola(ProfilePoint& point, double before, double after) {
+  static void set_parabola(VerticalIntersection& point, double before, double after) {
     if (before == 0) return;
-    point.curve = ProfilePoint::Curve::kParabola;
+    point.curve = VerticalIntersection::Curve::kParabola;
     point.before = before;
     point.after = after;
   }
@@ -475,7 +475,7 @@ std::optional<AlignmentProfile> read_profile(const LandXml& xml, pugi::xml_node 
                   "has " + counted(read.points.size(), "point") + "; expected at least two");
   }
   for (const std::size_t end : {std::size_t{0}, read.points.size() - 1}) {
-    if (read.points[end].curve == ProfilePoint::Curve::kNone) continue;
+    if (read.points[end].curve == VerticalIntersection::Curve::kNone) continue;
     xml.refuse_at(read.nodes[end],
                   "is a curve at an end of the profile, where no slope lies beyond "
                   "it; expected a PVI");
@@ -485,7 +485,7 @@ std::optional<AlignmentProfile> read_profile(const LandXml& xml, pugi::xml_node 
     const double overlap = profile.overlap_before(i);
     if (overlap <= options.max_gap) continue;
     const std::string by = metres_text(overlap);
-    const bool is_curve = read.points[i].curve != ProfilePoint::Curve::kNone;
+    const bool is_curve = read.points[i].curve != VerticalIntersection::Curve::kNone;
     xml.refuse_at(read.nodes[i],
                   (is_curve ? "its curve begins " + by +
                                   " m before the previous point or the end of its curve"

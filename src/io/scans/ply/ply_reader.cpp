@@ -69,9 +69,10 @@ class AsciiPlyReader final : public PlyBodyReader {
       return false;
     }
     const PlyElement& vertices = header_.vertices();
-    const auto parse = PointBlocks::of_lines([this](std::string_view line, Vec3& point) {
-      if (is_blank_line(line)) return PointBlocks::Line::kNothing;
-      return parse_vertex(line, point) ? PointBlocks::Line::kPoint : PointBlocks::Line::kOther;
+    const auto parse = PointLineBlocks::of_lines([this](std::string_view line, Vec3& point) {
+      if (is_blank_line(line)) return PointLineBlocks::Line::kNothing;
+      return parse_vertex(line, point) ? PointLineBlocks::Line::kPoint
+                                       : PointLineBlocks::Line::kOther;
     });
     if (blocks_.read(input_, parse, vertices.count - next_)) return true;
     in_turn_ = kBatchPoints;
@@ -175,7 +176,7 @@ class AsciiPlyReader final : public PlyBodyReader {
     for (double i = 0; i < count; ++i) next_number(at, end, property);
   }
 
-  PointBlocks blocks_;
+  PointLineBlocks blocks_;
   std::size_t in_turn_ = 0;  ///< number of lines to read one by one before reading ahead
 };
 

@@ -151,8 +151,8 @@ std::string decimal_commas_in(std::string_view line) {
   return found > 1 ? " has decimal commas, which are not read; write decimal points" : "";
 }
 
-std::optional<std::uint64_t> PointBlocks::read(InputBuffer& input, const ParseBlock& parse,
-                                               std::uint64_t most) {
+std::optional<std::uint64_t> PointLineBlocks::read(InputBuffer& input, const ParseBlock& parse,
+                                                   std::uint64_t most) {
   parts_.clear();
   part_ = point_ = 0;
   if (!input.can_seek()) return std::nullopt;
@@ -184,7 +184,7 @@ std::optional<std::uint64_t> PointBlocks::read(InputBuffer& input, const ParseBl
   return read;
 }
 
-std::size_t PointBlocks::take(std::vector<Vec3>& out, std::size_t size) {
+std::size_t PointLineBlocks::take(std::vector<Vec3>& out, std::size_t size) {
   const std::size_t before = out.size();
   for (; part_ < parts_.size() && out.size() < size; point_ = 0, ++part_) {
     const std::vector<Vec3>& points = parts_[part_].points;

@@ -111,7 +111,7 @@ std::string decimal_commas_in(std::string_view line);
 /// Reads the points of a text file ahead, several blocks of lines at the same time. It accepts only
 /// whole lines that certainly are points or hold nothing. Everything else stays in the input for a
 /// reader that goes line by line and can report what is wrong.
-class PointBlocks {
+class PointLineBlocks {
  public:
   enum class Line {
     kPoint,

@@ -120,10 +120,11 @@ class XyzReader final : public PointReader {
     }
     const std::uint64_t most = is_counted() ? count_.points - next_ : ~std::uint64_t{0};
     const auto parse =
-        PointBlocks::of_lines([line = line_](std::string_view text, Vec3& point) mutable {
+        PointLineBlocks::of_lines([line = line_](std::string_view text, Vec3& point) mutable {
           text = without_leading_blanks(text);
-          if (is_text_comment(text)) return PointBlocks::Line::kNothing;
-          return line.parse(text, point) ? PointBlocks::Line::kPoint : PointBlocks::Line::kOther;
+          if (is_text_comment(text)) return PointLineBlocks::Line::kNothing;
+          return line.parse(text, point) ? PointLineBlocks::Line::kPoint
+                                         : PointLineBlocks::Line::kOther;
         });
     const auto read = blocks_.read(input_, parse, most);
     if (!read) {
@@ -222,7 +223,7 @@ class XyzReader final : public PointReader {
   std::uint64_t declared_ = 0;  ///< sum of all counts up to count_
   std::uint64_t counts_ = 0;    ///< number of counts so far, including count_
   std::uint64_t next_ = 0;      ///< points of count_ read so far
-  PointBlocks blocks_;
+  PointLineBlocks blocks_;
   std::size_t in_turn_ = 1;  ///< number of lines to read one by one before reading ahead
   OpenEnd open_end_;
   bool finished_ = false;

@@ -15,7 +15,7 @@ using namespace clearway::test;
 
 namespace {
 
-using Curve = ProfilePoint::Curve;
+using Curve = VerticalIntersection::Curve;
 
 /// A track along x from station 0 to 1000.
 Alignment straight_track() { return {.plan = AlignmentPlan({{1000, 0, 0, {0, 0}, {1000, 0}}}, 0)}; }
@@ -23,7 +23,8 @@ Alignment straight_track() { return {.plan = AlignmentPlan({{1000, 0, 0, {0, 0},
 }  // namespace
 
 TEST_CASE("curves of a profile join both slopes") {
-  const auto around = [](const ProfilePoint& middle, double first, double last, double end) {
+  const auto around = [](const VerticalIntersection& middle, double first, double last,
+                         double end) {
     return AlignmentProfile(
         {{.station = 0, .height = first}, middle, {.station = end, .height = last}});
   };
@@ -124,8 +125,8 @@ TEST_CASE("a track without cant stands upright on its slope") {
   for (int k = 0; k < 9; ++k) CHECK(level.rotation[k] == upright[k]);
   check_equal(level.translation[0], 12.5);
   check_equal(level.translation[2], 7);
-  track.profile.emplace(
-      std::vector<ProfilePoint>{{.station = 0, .height = 0}, {.station = 1000, .height = 750}});
+  track.profile.emplace(std::vector<VerticalIntersection>{{.station = 0, .height = 0},
+                                                          {.station = 1000, .height = 750}});
   const Pose climbing = track.pose_at(400);
   CHECK(climbing.translation[2] == Approx(300));
   const double climb[9] = {0.8, 0, -0.6, 0, 1, 0, 0.6, 0, 0.8};
