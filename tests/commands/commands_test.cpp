@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "catch_session.hpp"
+#include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
 #include "tools/cli/support/program.hpp"
 
@@ -16,6 +17,7 @@ namespace clearway::test {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
 /// A line of a text that begins with a word, and the lines below it that are further indented.
 struct Statement {
@@ -71,8 +73,9 @@ class Parser {
   void take_rows(std::size_t indent, Statement& statement) {
     for (; next_ < lines_.size(); ++next_) {
       const std::string& line = lines_[next_];
+      if (says_nothing(line)) continue;
       const std::size_t at = indent_of(line);
-      if (at == std::string::npos || at <= indent || line[at] != '|') return;
+      if (at <= indent || line[at] != '|') return;
       const std::size_t begin = at + (line.substr(at + 1, 1) == " " ? 2 : 1);
       statement.rows.push_back(line.substr(begin));
     }
@@ -104,7 +107,7 @@ std::vector<std::string> parts_of(const std::string& text, const std::string& se
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
     parts.push_back(trimmed(text.substr(begin, end - begin)));
-    begin = end + separator.size();
+    begin = end + std::max<std::size_t>(separator.size() - 1, 1);
   }
   return parts;
 }
@@ -114,19 +117,31 @@ std::vector<std::string> words_of(const std::string& text) {
   return {std::istream_iterator<std::string>(in), {}};
 }
 
-/// A text: what is made once, and the tests.
+/// What a set-up has made: files, and names of texts.
+struct Made {
+  ScratchFolder folder = {};
+  Variables known = {};
+};
+
+/// A text: what is made once, and the tests. Set-ups of `shared/scenes.test` are those of every
+/// text.
 struct Text {
-  explicit Text(const fs::path& file) : name(file.stem().string()), all(Parser(file).parse()) {}
+  explicit Text(const fs::path& file) : name(file.stem().string()), all(Parser(file).parse()) {
+    const fs::path shared = file.parent_path() / "shared" / "scenes.test";
+    for (Statement& setup : Parser(shared).parse()) all.push_back(std::move(setup));
+  }
 
   std::string name;
   std::vector<Statement> all;
-  std::map<std::string, std::unique_ptr<ScratchFolder>> made = {};  ///< folders of set-ups
+  std::map<std::string, std::unique_ptr<Made>> made = {};  ///< by set-ups
 };
 
 /// Runs the statements of one test, or of a set-up, in a folder.
 class Run {
  public:
   Run(Text& text, const ScratchFolder& folder) : text_(text), folder_(folder) {}
+
+  const Variables& known() const { return known_; }
 
   void body(const std::vector<Statement>& statements, const Variables& variables) {
     for (std::size_t i = 0; i < statements.size(); ++i) {
@@ -140,24 +155,40 @@ class Run {
   }
 
  private:
-  /// Asks the program: `ARGUMENTS => CODE WORDS`, the exit code and what it says. A program that
-  /// refuses prints messages alone, unless a check that follows says what it prints.
+  /// Asks the program what a statement says, or once with each of its rows.
   void ask(const std::vector<Statement>& statements, std::size_t i, const Variables& variables) {
-    const std::string text = filled(statements[i].rest, variables);
-    const std::size_t arrow = std::min(text.rfind(" => "), text.size());
-    const auto [arguments, pipe] = split_input(text.substr(0, arrow));
-    outcome_ = run_program(folder_, arguments, pipe);
-    std::size_t digits = 0;
-    const std::string expected = arrow < text.size() ? text.substr(arrow + 4) : "0";
-    const int code = std::stoi(expected, &digits);
-    const std::string words = trimmed(expected.substr(digits));
-    bool may_print = code < 2 || code > 4;
+    const Statement& asked = statements[i];
+    bool may_print = false;
     for (std::size_t k = i + 1; k < statements.size(); ++k) {
       if (statements[k].word == ">" || statements[k].word == "?") break;
       may_print = may_print || statements[k].word == "out" || statements[k].word == "json";
     }
-    check_outcome(outcome_, code, words.empty() ? kAnything : words, may_print ? kAnything : "");
-    if (statements[i].word == "?") try_properties(arguments);
+    if (asked.rows.empty()) ask_one(asked.word, filled(asked.rest, variables), may_print);
+    for (const std::string& row : asked.rows) {
+      const RowName shown(row);
+      ask_one(asked.word, filled(asked.rest + " " + row, variables), may_print);
+    }
+  }
+
+  /// `ARGUMENTS => CODE WORDS`: the exit code and what the program says. A program that refuses
+  /// leaves no output, and prints messages alone, unless a check that follows says what it prints.
+  void ask_one(const std::string& word, const std::string& text, bool may_print) {
+    const std::size_t arrow = std::min(text.rfind(" => "), text.size());
+    const auto [arguments, pipe] = split_input(text.substr(0, arrow));
+    std::size_t digits = 0;
+    const std::string expected = arrow < text.size() ? text.substr(arrow + 4) : "0";
+    const int code = std::stoi(expected, &digits);
+    const std::string words = trimmed(expected.substr(digits));
+    const bool refuses = code >= 2 && code <= 4;
+    const std::string output = output_of(arguments);
+    const bool existed = output.empty() || fs::exists(fs::symlink_status(folder_ / output));
+    outcome_ = run_program(folder_, arguments, pipe);
+    check_outcome(outcome_, code, words.empty() ? kAnything : words,
+                  refuses && !may_print ? "" : kAnything);
+    if (refuses && !existed && fs::is_regular_file(folder_ / output)) {
+      fail_check(output + " was left by " + arguments);
+    }
+    if (word == "?") try_properties(arguments);
   }
 
   /// Tries what holds of every question: `run` with these arguments, which has ended. Two
@@ -189,8 +220,7 @@ class Run {
   }
   static std::string output_of(const std::string& arguments) {
     std::smatch found;
-    if (!std::regex_search(arguments, found, std::regex(" -o (\\S+)"))) fail_check("no -o");
-    return found[1];
+    return std::regex_search(arguments, found, std::regex(" -o (\\S+)")) ? found.str(1) : "";
   }
   void check_same_result(const std::string& arguments, const std::string& other) const {
     check_same(bytes_of(folder_ / other), bytes_of(folder_ / output_of(arguments)));
@@ -244,6 +274,18 @@ class Run {
     if (word == "err") return check_says(outcome_.err, rest);
     if (word == "without") return check_lacks(outcome_.err + outcome_.out, rest);
     if (word == "json") return check_json_text(outcome_.out, rest.empty() ? text : rest);
+    if (word == "holds") return check_holds(rest, words);
+    if (word == "read") {
+      outcome_.out = bytes_of(folder_ / rest);
+      return;
+    }
+    if (word == "las")
+      return put_bytes(folder_ / words.at(0),
+                       las_of(words.size() > 1 ? bytes_of(folder_ / words[1]) : text));
+    if (word == "call") {
+      known_[words.at(0)] = trimmed(rest.substr(words[0].size()));
+      return;
+    }
     if (word == "near") {
       const double number = std::stod(words.at(1));
       const double tolerance = words.size() > 2 ? std::stod(words[2]) : 1e-5 * std::abs(number);
@@ -269,26 +311,78 @@ class Run {
 
   /// Gives a variable the value at a pointer of the JSON that was printed.
   void let(const std::string& name, const std::string& pointer) {
-    const nlohmann::json value = json_of(outcome_).at(nlohmann::json::json_pointer(pointer));
+    const json value = json_of(outcome_).at(pointer_of(pointer));
     known_[name] = value.is_string() ? value.get<std::string>() : value.dump();
   }
 
+  /// `A + B < C`: values are numbers and JSON pointers; `#POINTER` counts what a list or object
+  /// has.
+  void check_holds(const std::string& text, const std::vector<std::string>& words) const {
+    const json found = json_of(outcome_);
+    const auto value = [&](const std::string& word) {
+      if (word[0] == '#') return static_cast<double>(found.at(pointer_of(word.substr(1))).size());
+      return word[0] == '/' ? found.at(pointer_of(word)).get<double>() : std::stod(word);
+    };
+    double sums[2] = {value(words.at(0)), 0};
+    int side = 0;
+    std::string relation;
+    for (std::size_t i = 1; i + 1 < words.size(); i += 2) {
+      const std::string& sign = words[i];
+      const double next = value(words[i + 1]);
+      if (sign == "+" || sign == "-") {
+        sums[side] += sign == "+" ? next : -next;
+      } else if (sign == "*") {
+        sums[side] *= next;
+      } else {
+        relation = sign;
+        sums[side = 1] = next;
+      }
+    }
+    const bool holds = relation == "<"    ? sums[0] < sums[1]
+                       : relation == "<=" ? sums[0] <= sums[1]
+                       : relation == ">"  ? sums[0] > sums[1]
+                       : relation == ">=" ? sums[0] >= sums[1]
+                                          : relation == "=" && sums[0] == sums[1];
+    if (!holds) fail_check(text + ": " + std::to_string(sums[0]) + ", " + std::to_string(sums[1]));
+  }
+
+  /// A LAS file with steps of a millimetre of rows with x, y and z in steps, and a class.
+  static std::string las_of(const std::string& rows) {
+    LasBytes las;
+    las.scale = {0.001, 0.001, 0.001};
+    las.offset = {};
+    las.points.clear();
+    std::istringstream in(rows);
+    int point_class = 0;
+    for (std::array<std::int32_t, 3> p{}; in >> p[0] >> p[1] >> p[2] >> point_class;) {
+      las.points.push_back(p);
+      las.bytes_of_class.push_back(static_cast<std::uint8_t>(point_class));
+    }
+    return las.build();
+  }
+
+  static json::json_pointer pointer_of(const std::string& text) { return json::json_pointer(text); }
+
   void shell(const std::string& command) {
-    const std::string line = "cd " + quoted(folder_ / "") + " && { " + command + "; }";
+    const std::string line =
+        "cd " + quoted(folder_ / "") + " && exec > /dev/null && { " + command + "; }";
     if (std::system(line.c_str()) != 0) fail_check("the shell failed");
   }
 
   /// Copies what a set-up has made, which is done when it is first used.
   void use(const std::string& name) {
-    std::unique_ptr<ScratchFolder>& made = text_.made[name];
+    std::unique_ptr<Made>& made = text_.made[name];
     if (made == nullptr) {
       const auto setup = std::ranges::find_if(
           text_.all, [&](const Statement& one) { return one.word == "setup" && one.rest == name; });
       if (setup == text_.all.end()) return fail_check("no set-up is called '" + name + "'");
-      made = std::make_unique<ScratchFolder>();
-      Run(text_, *made).body(setup->body, {});
+      made = std::make_unique<Made>();
+      Run run(text_, made->folder);
+      run.body(setup->body, {});
+      made->known = run.known();
     }
-    fs::copy(*made / "", folder_ / "", fs::copy_options::recursive);
+    fs::copy(made->folder / "", folder_ / "", fs::copy_options::recursive);
+    known_.insert(made->known.begin(), made->known.end());
   }
 
   /// `for NAME in VALUES`, or `for NAME, NAME in` with a row of values for each turn.
@@ -297,7 +391,7 @@ class Run {
     const std::vector<std::string> names = parts_of(rest.substr(0, in), ",");
     std::vector<std::vector<std::string>> turns;
     for (const std::string& row : statement.rows) {
-      turns.push_back(parts_of(filled(row, variables), " ; "));
+      turns.push_back(parts_of(filled(row, variables) + " ", " ; "));
     }
     for (const std::string& value : words_of(rest.substr(std::min(in + 3, rest.size())))) {
       turns.push_back({value});
@@ -322,7 +416,8 @@ class Run {
   Text& text_;
   const ScratchFolder& folder_;
   Outcome outcome_{};
-  Variables known_{{"program", CLEARWAY_PROGRAM}};  ///< also what `let` has set
+  Variables known_{{"program", CLEARWAY_PROGRAM},
+                   {"python", CLEARWAY_PYTHON3}};  ///< also what `let` has set
 };
 
 std::vector<Text>& texts() {
