@@ -19,6 +19,13 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// A factor for peaks of memory, because sanitizers take memory of their own.
+#ifdef CLEARWAY_SANITIZED
+constexpr const char* kMeasured = "0";
+#else
+constexpr const char* kMeasured = "1";
+#endif
+
 /// A line of a text that begins with a word, and the lines below it that are further indented.
 struct Statement {
   std::string place;  ///< file and line
@@ -417,7 +424,8 @@ class Run {
   const ScratchFolder& folder_;
   Outcome outcome_{};
   Variables known_{{"program", CLEARWAY_PROGRAM},
-                   {"python", CLEARWAY_PYTHON3}};  ///< also what `let` has set
+                   {"python", CLEARWAY_PYTHON3},
+                   {"measured", kMeasured}};  ///< also what `let` has set
 };
 
 std::vector<Text>& texts() {
