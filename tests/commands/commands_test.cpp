@@ -19,6 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+/// The folder of real scans, or nothing.
+std::string data_folder() {
+  const char* const folder = std::getenv("CLEARWAY_TEST_DATA");
+  return folder == nullptr ? "" : folder;
+}
+
 /// A factor for peaks of memory, because sanitizers take memory of their own.
 #ifdef CLEARWAY_SANITIZED
 constexpr const char* kMeasured = "0";
@@ -425,7 +431,8 @@ class Run {
   Outcome outcome_{};
   Variables known_{{"program", CLEARWAY_PROGRAM},
                    {"python", CLEARWAY_PYTHON3},
-                   {"measured", kMeasured}};  ///< also what `let` has set
+                   {"measured", kMeasured},
+                   {"data", data_folder()}};  ///< also what `let` has set
 };
 
 std::vector<Text>& texts() {
@@ -442,7 +449,7 @@ TEST_CASE("commands") {
   REQUIRE_FALSE(texts().empty());
   for (Text& text : texts()) {
     for (const Statement& statement : text.all) {
-      if (statement.word == "setup") continue;
+      if (statement.word == "setup" || statement.word == "data") continue;
       DYNAMIC_SECTION(text.name << ": " << statement.rest) {
         if (statement.word != "test") fail_check(statement.place + ": expected a test");
         const ScratchFolder folder;
@@ -457,6 +464,9 @@ int main(int count, char** arguments) {
   int texts_end = 1;
   for (; texts_end < count && std::string(arguments[texts_end]).ends_with(ending); ++texts_end) {
     texts().emplace_back(std::filesystem::path(arguments[texts_end]));
+  }
+  for (const Text& text : texts()) {
+    if (text.all.at(0).word == "data" && data_folder().empty()) return 77;
   }
   arguments[texts_end - 1] = arguments[0];
   return run_catch(count - texts_end + 1, arguments + texts_end - 1);
