@@ -194,12 +194,15 @@ class Run {
     const std::string words = trimmed(expected.substr(digits));
     const bool refuses = code >= 2 && code <= 4;
     const std::string output = output_of(arguments);
-    const bool existed = output.empty() || fs::exists(fs::symlink_status(folder_ / output));
+    std::vector<std::string> absent = {output, output + ".partial"};
+    std::erase_if(absent, [&](const std::string& name) {
+      return output.empty() || fs::exists(fs::symlink_status(folder_ / name));
+    });
     outcome_ = run_program(folder_, arguments, pipe);
     check_outcome(outcome_, code, words.empty() ? kAnything : words,
                   refuses && !may_print ? "" : kAnything);
-    if (refuses && !existed && fs::is_regular_file(folder_ / output)) {
-      fail_check(output + " was left by " + arguments);
+    for (const std::string& name : absent) {
+      if (refuses && fs::is_regular_file(folder_ / name)) fail_check(name + " was left");
     }
     if (word == "?") try_properties(arguments);
   }

@@ -9,7 +9,6 @@
 #include "support/clouds.hpp"
 #include "support/store_fixture.hpp"
 #include "tools/cli/support/program.hpp"
-#include "tools/cli/support/spawned.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -319,14 +318,3 @@ TEST_CASE("a damaged store is named by verify, by a run and by a conversion that
   work.succeed("convert scan.xyz -o site.h5 --force");
   check_same(work.bytes("site.h5"), sound);
 }
-
-#ifndef CLEARWAY_SANITIZED  // sanitizers take memory of their own
-TEST_CASE("a conversion stays within --memory") {
-  const ScratchFolder folder;
-  write_las(folder / "a.las", cube_cloud(4'500'000, -1000000, 1000000, 1));
-  const std::uint64_t peak =
-      peak_memory_of({"convert", (folder / "a.las").string(), "-o", (folder / "a.h5").string(),
-                      "--memory", "224M", "--threads", "2"});
-  CHECK(peak < (std::uint64_t{224} << 20));
-}
-#endif
