@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "catch_session.hpp"
-#include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
+#include "support/classed_scans.hpp"
 #include "tools/cli/support/program.hpp"
 
 namespace clearway::test {
@@ -295,9 +295,9 @@ class Run {
       outcome_.out = bytes_of(folder_ / rest);
       return;
     }
-    if (word == "las")
-      return put_bytes(folder_ / words.at(0),
-                       las_of(words.size() > 1 ? bytes_of(folder_ / words[1]) : text));
+    if (word == "las") {
+      return put_las(folder_ / words.at(0), words.size() > 1 ? bytes_of(folder_ / words[1]) : text);
+    }
     if (word == "call") {
       known_[words.at(0)] = trimmed(rest.substr(words[0].size()));
       return;
@@ -315,10 +315,9 @@ class Run {
     if (word == "text") {
       return check_says(bytes_of(folder_ / words.at(0)), trimmed(rest.substr(words[0].size())));
     }
-    if (word == "absent" || word == "exists") {
+    if (word == "absent") {
       for (const std::string& name : words) {
-        const bool exists = fs::exists(fs::symlink_status(folder_ / name));
-        if (exists != (word == "exists")) fail_check(name + (exists ? " exists" : " is missing"));
+        if (fs::exists(fs::symlink_status(folder_ / name))) fail_check(name + " exists");
       }
       return;
     }
@@ -362,19 +361,16 @@ class Run {
     if (!holds) fail_check(text + ": " + std::to_string(sums[0]) + ", " + std::to_string(sums[1]));
   }
 
-  /// A LAS file with steps of a millimetre of rows with x, y and z in steps, and a class.
-  static std::string las_of(const std::string& rows) {
-    LasBytes las;
-    las.scale = {0.001, 0.001, 0.001};
-    las.offset = {};
-    las.points.clear();
+  /// Writes a LAS file with steps of a millimetre of rows with x, y and z in steps, and a class.
+  static void put_las(const fs::path& path, const std::string& rows) {
     std::istringstream in(rows);
+    std::vector<Quantum> points;
+    std::vector<std::uint8_t> classes;
     int point_class = 0;
-    for (std::array<std::int32_t, 3> p{}; in >> p[0] >> p[1] >> p[2] >> point_class;) {
-      las.points.push_back(p);
-      las.bytes_of_class.push_back(static_cast<std::uint8_t>(point_class));
+    for (Quantum p{}; in >> p[0] >> p[1] >> p[2] >> point_class; points.push_back(p)) {
+      classes.push_back(static_cast<std::uint8_t>(point_class));
     }
-    return las.build();
+    write_classed(path, points, classes, 0, {});
   }
 
   static json::json_pointer pointer_of(const std::string& text) { return json::json_pointer(text); }

@@ -17,8 +17,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-using Steps = std::vector<std::array<std::int32_t, 3>>;
-
 /// Converts a file, and the same bytes from standard input, to file.h5 and pipe.h5.
 void convert_both(const Workplace& work, const std::string& name, const std::string& options) {
   work.succeed("convert " + name + " --force -o file.h5" + options);
@@ -129,21 +127,6 @@ TEST_CASE("LAZ from a file and from standard input makes the store of its LAS tw
   }
 }
 
-TEST_CASE("a LAS file without its count is refused, and read from standard input with a warning") {
-  const Workplace work;
-  LasBytes las;
-  las.points = cube_cloud(5000, -3000, 3000, 1);
-  std::string bytes = las.build();
-  LasBytes::put<std::uint32_t>(bytes, 107, 0);
-  work.put("a.las", bytes);
-  check_outcome(work.run("convert a.las -o a.h5"), 3,
-                "declares 0 points ... holds 5000 records ... convert - <");
-  CHECK_FALSE(work.has("a.h5"));
-  check_outcome(work.run("convert - -o a.h5", work.folder / "a.las"), 0,
-                "declares 0 points ... 5000 came");
-  CHECK(stored_points(StoreReader(work.folder / "a.h5")).size() == 5000);
-}
-
 TEST_CASE("standard input makes the store of the file but for the description of its source") {
   const Workplace work;
   LasBytes las;
@@ -165,34 +148,6 @@ TEST_CASE("standard input makes the store of the file but for the description of
     CHECK(stored_points(pipe) == stored_points(file));
     CHECK(pipe.metadata().sources == std::vector<SourceFile>{{"-", 0, 0}});
   }
-}
-
-TEST_CASE("zeros and points beyond the header's bounds are told of small files too") {
-  const Workplace work;
-  Steps sound, far;
-  for (std::int32_t i = 0; i < 20; ++i) {
-    sound.push_back({487 * i + 3, 251 * i + 1, 97 * i});
-    far.push_back({487 * i + 3, 251 * i + 40'001, 97 * i});
-  }
-  const auto check = [&](Steps points, const Steps& more, const std::vector<std::string>& codes) {
-    points.insert(points.end(), more.begin(), more.end());
-    LasBytes las;
-    las.scale = {0.001, 0.001, 0.001};
-    las.offset = {1000, 2000, 0};
-    las.points = points;
-    std::string bytes = las.build();
-    for (unsigned k = 0; k < 3; ++k) {  // bounds of 0 to 10 m from the offset
-      LasBytes::put(bytes, 179 + 16 * k, las.offset[k] + 10);
-      LasBytes::put(bytes, 187 + 16 * k, las.offset[k]);
-    }
-    work.put("a.las", bytes);
-    check_equal(codes_in(work.answer("convert --json --force a.las -o a.h5")["warnings"]), codes);
-  };
-  check(sound, {}, {});
-  check(sound, Steps(20, {0, 0, 0}), {"same-place"});
-  check(sound, {{5'000, 40'000, 0}}, {"declared-bounds"});
-  check(far, {}, {"outside-bounds"});
-  check(sound, {{5'000, 10'400, 0}}, {});
 }
 
 TEST_CASE("a store keeps few and short warnings") {
