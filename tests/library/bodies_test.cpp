@@ -1,73 +1,144 @@
-// Vehicles of several bodies against brute force, body by body, merged by hand.
-#include <algorithm>
+// Vehicles of several bodies: what is refused, how bodies follow a path, and what results say.
+#include <cmath>
+#include <limits>
 
-#include "library/vehicle_truth.hpp"
+#include "clearway/conflicts.hpp"
+#include "clearway/error.hpp"
+#include "io/result/result.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
+#include "support/questions.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
-TEST_CASE("first poses and bodies are those of brute force for each body") {
-  for (const std::uint64_t seed : {71, 72, 73}) {
-    Vehicle vehicle(seed);
-    check_first_poses(vehicle, {.threads = static_cast<int>(seed % 2 + 1)});
-    const auto body = Result(vehicle.folder / "out.h5").first_body();
-    // At some poses the third body is where the first one is, and the first one counts there.
-    for (std::uint32_t i = 0; i < 3; ++i) CHECK(std::ranges::count(body, i) > 0);
+TEST_CASE("bodies that contradict path, engine or their own triangles are refused by name") {
+  const AskedScan scan(41, true);
+  const Query sound = scan.vehicle(81);
+  Query query = sound;
+  const auto refused = [&](const char* words, Engine engine = Engine::kSweep) {
+    check_refused([&] { searched(scan, query, "out.h5", {.engine = engine}); }, words);
+    query = sound;
+  };
+  refused("vehicles of several bodies", Engine::kKdtree);
+  refused("vehicles of several bodies", Engine::kGrid);
+  query.model = {{0, 0, 0}};
+  refused("either a model or bodies");
+  query.bodies[1].name = "front";
+  refused("body front: another body");
+  query.bodies[1].name = "";
+  refused("a name of at most");
+  query.bodies[1].name = "two\nlines";
+  refused("in one line");
+  query.bodies[1].model.vertices.clear();
+  refused("body middle has no points");
+  query.bodies[1].poses.pop_back();
+  refused("body middle: has 27 poses");
+  query.bodies[1].path_pose.back() = 40;
+  refused("body middle: its poses are not in the order of the path");
+  std::swap(query.bodies[1].path_pose[0], query.bodies[1].path_pose[1]);
+  refused("not in the order");
+  query.between_poses = true;
+  refused("body rear has no pose between poses 1 and 3");
+  query.bodies.pop_back();
+  query.bodies[1].model.triangles = {{0, 1, 2}};
+  query.between_poses = true;
+  refused("motion between poses is searched for models of points");
+  query.bodies[2].model.triangles = {{0, 1, 25}};
+  refused("of body rear has the corner 25");
+  query.bodies[2].model = Model(query.bodies[2].model.vertices, {{0, 1, 2}}, {0, 0});
+  refused("body rear has ... the solids of");
+  query.bodies[2].model = Model(query.bodies[2].model.vertices, {{0, 1, 2}}, {1000});
+  refused("body rear names solid 1000");
+  query.floor = 0;
+  double* const r = query.bodies[1].poses[3].rotation;
+  r[2] = r[5] = r[8] = 0;
+  refused("body middle: the rotation of pose 3 has no inverse");
+  query.floor = std::nan("");
+  refused("the floor is nan, expected a finite number");
+}
+
+TEST_CASE("bodies follow the path of a query") {
+  std::vector<Pose> path;
+  for (int i = 0; i < 21; ++i) path.push_back(translation({0.5 * i, 0, 0}));
+  std::vector<Message> warnings;
+  const Body body = follow({.name = "wagon", .model = {{0, 0, 0}}, .poses = {}, .path_pose = {}},
+                           path, BodyPivots{2, -1}, &warnings);
+  CHECK(body.path_pose.front() == 2);
+  CHECK(body.path_pose.back() == 16);
+  CHECK(body.poses.size() == 15);
+  CHECK(body.poses[0].translation[0] == Approx(1));
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings[0].code == "body-off-path");
+  CHECK_THAT(warnings[0].text, Contains("body wagon: 6 of 21 poses"));
+  CHECK(follow(body, path, BodyStation{0}).poses == path);
+  CHECK_THROWS_AS(follow(body, path, BodyPivots{1, 1}), UsageError);
+  CHECK_THROWS_AS(follow(body, path, BodyStation{std::numeric_limits<double>::infinity()}),
+                  UsageError);
+  CHECK_THROWS_AS(follow(body, path, BodyStation{11}), InputError);
+}
+
+TEST_CASE("a vehicle's result says what its bodies consist of, and a body without poses is named") {
+  const AskedScan scan(41, true);
+  Query query = scan.vehicle(83);
+  const auto header_of = [&](const Model& model) {
+    query.bodies[0].model = query.bodies[2].model = model;
+    const SearchReport report =
+        search(Store(scan.store), query, scan.folder / "out.h5", {.threads = 1, .overwrite = true});
+    const ResultHeader header = Result(scan.folder / "out.h5").reader().header();
+    CHECK(report.model_triangles == header.model_triangles);
+    REQUIRE(report.searched);
+    CHECK(report.searched->whole < report.searched->path);
+    return header;
+  };
+  Model solids = scan.models[4];
+  const ResultHeader with_solids = header_of(solids);
+  CHECK(with_solids.model_solids == 4);
+  CHECK(with_solids.model_triangles == 2 * solids.triangles.size());
+  solids.solid_of.clear();
+  const ResultHeader with_triangles = header_of(solids);
+  CHECK(with_triangles.model_solids == 0);
+  CHECK(with_triangles.model_hash != with_solids.model_hash);
+  solids.triangles.clear();
+  const ResultHeader with_points = header_of(solids);
+  CHECK(with_points.model_triangles == 0);
+  CHECK(with_points.model_hash != with_triangles.model_hash);
+
+  query.bodies[1].poses.clear();
+  query.bodies[1].path_pose.clear();
+  const SearchReport report =
+      search(Store(scan.store), query, scan.folder / "none.h5", {.threads = 1});
+  CHECK(std::ranges::any_of(report.warnings, [](const Message& warning) {
+    return warning.code == "no-poses" && warning.text.starts_with("body middle");
+  }));
+}
+
+TEST_CASE("a conflict has the greatest depth of its points") {
+  const AskedScan scan(41, true);
+  Query query = scan.vehicle(3, 12, false);
+  query.radius = 0.1;
+  query.first_pose = query.depth = true;
+  query.error_scan = 0.005;  // so that near points are grouped too
+  searched(scan, query, "out.h5");
+  const Result result(scan.folder / "out.h5");
+  const Collisions rows = result.collisions();
+  std::vector<std::uint32_t> conflict_of;
+  ConflictOptions options{.gap = 0.08, .min_points = 2};
+  options.bodies = query.bodies;
+  const Conflicts found = find_conflicts(result, query.poses, options, &conflict_of);
+  REQUIRE(found.near_points > 0);
+  REQUIRE(found.listed.size() > 2);
+  for (const Conflict& conflict : found.listed) {
+    CAPTURE(conflict.id);
+    std::optional<double> greatest;
+    std::optional<std::uint64_t> source;
+    for (std::size_t row = 0; row < rows.size(); ++row) {
+      if (conflict_of[row] != conflict.id || rows.depth[row] <= greatest.value_or(-1)) continue;
+      greatest = rows.depth[row];
+      source = rows.depth_source[row];
+    }
+    CHECK(conflict.depth == greatest);
+    CHECK(conflict.depth_source == source);
+    CHECK_FALSE(conflict.points_inside);
   }
-}
-
-TEST_CASE("the set of a vehicle is that of all its bodies") {
-  Vehicle vehicle(74);
-  const auto expected = first_by_hand(vehicle);
-  std::vector<std::uint64_t> colliding;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    if (expected[i].pose != kNever) colliding.push_back(i);
-  }
-  const Result result = vehicle.run();
-  CHECK(result.source() == colliding);
-  CHECK(result.first_body().empty());
-  CHECK(result.bodies() == std::vector<std::string>{"front", "middle", "rear"});
-  CHECK(result.poses() == vehicle.query.poses.size());
-  CHECK(vehicle.report.model_points == 75);
-}
-
-TEST_CASE("bodies that move between poses have the ways of the path") {
-  Vehicle vehicle(75, false);
-  vehicle.query.between_poses = true;
-  check_first_poses(vehicle);
-}
-
-TEST_CASE("clearances name the nearest body and of equals the lowest") {
-  Vehicle vehicle(76);
-  vehicle.query.first_pose = GENERATE(false, true);
-  vehicle.query.clearance = GENERATE(0.03, 0.2);
-  check_clearances(vehicle);
-}
-
-TEST_CASE("the profile of a vehicle is the least of its bodies") {
-  Vehicle vehicle(77);
-  vehicle.query.profile = 0.15;
-  check_profile(vehicle);
-}
-
-TEST_CASE("a vehicle of one body on the path finds what its model finds") {
-  Vehicle vehicle(78);
-  vehicle.query.bodies.resize(1);
-  vehicle.query.first_pose = true;
-  vehicle.query.clearance = 0.1;
-  const Result as_body = vehicle.run();
-  const auto source = as_body.source();
-  const auto pose = as_body.first_pose();
-  const Clearances clearance = as_body.clearance();
-  CHECK(std::ranges::count(as_body.first_body(), 0u) == static_cast<long>(source.size()));
-  vehicle.query.model = vehicle.query.bodies[0].model;
-  vehicle.query.bodies.clear();
-  const Result as_model = vehicle.run({.engine = Engine::kSweep, .device = Device::kCpu});
-  CHECK(as_model.source() == source);
-  CHECK(as_model.first_pose() == pose);
-  CHECK(as_model.clearance().distance == clearance.distance);
-  CHECK(as_model.clearance().pose == clearance.pose);
-  CHECK(as_model.bodies().empty());
-  CHECK(as_model.clearance().body.empty());
 }

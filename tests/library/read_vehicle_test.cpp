@@ -4,7 +4,9 @@
 #include "clearway/clearway.hpp"
 #include "io/paths/content_hash.hpp"
 #include "support/catch.hpp"
-#include "support/result_fixture.hpp"
+#include "support/compare.hpp"
+#include "support/scenes.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -47,42 +49,30 @@ TEST_CASE("a vehicle's file gives the bodies that follow gives") {
          {"name": "path", "model": "fin.off"},
          {"name": "crane", "model": "fin.off", "trajectory": "own.txt"})",
       {}, &told);
-  const std::vector<Vec3> line{{0, -1, 1}, {0, 0, 1}, {0, 1, 1}};
-  const Model fin = read_model(files.folder / "fin.off", {.as = ModelAs::kSurface});
-  std::vector<Body> expected{{.name = "body", .model = line, .poses = {}, .path_pose = {}},
-                             {.name = "bogie", .model = fin, .poses = {}, .path_pose = {}}};
-  expected[0] = follow(expected[0], files.path, BodyPivots{5, -5}, &expected_told);
-  expected[1] = follow(expected[1], files.path, BodyStation{5}, &expected_told);
-  CHECK(hash_of_bodies({{bodies[1]}}) != hash_of_bodies({{expected[1]}}));
-  expected[1].floor = 0.2;
   REQUIRE(bodies.size() == 4);
+  const Model fin = read_model(files.folder / "fin.off", {.as = ModelAs::kSurface});
+  Body body = follow({"body", {{0, -1, 1}, {0, 0, 1}, {0, 1, 1}}, {}, {}}, files.path,
+                     BodyPivots{5, -5}, &expected_told);
+  Body bogie = follow({"bogie", fin, {}, {}}, files.path, BodyStation{5}, &expected_told);
+  CHECK(hash_of_bodies({{bodies[1]}}) != hash_of_bodies({{bogie}}));
+  bogie.floor = 0.2;
   CHECK(!bodies[0].floor);
-  for (std::size_t i = 0; i < 2; ++i) {
-    INFO(bodies[i].name);
-    CHECK(bodies[i].path_pose.size() < files.path.size());
-    CHECK(hash_of_bodies({{bodies[i]}}) == hash_of_bodies({{expected[i]}}));
-  }
-  CHECK(bodies[2].poses.size() == files.path.size());
-  CHECK(hash_of_trajectory(bodies[2].poses) == hash_of_trajectory(files.path));
+  CHECK(bodies[0].path_pose.size() < files.path.size());
+  CHECK(bodies[1].path_pose.size() < files.path.size());
+  CHECK(hash_of_bodies({{bodies[0]}}) == hash_of_bodies({{body}}));
+  CHECK(hash_of_bodies({{bodies[1]}}) == hash_of_bodies({{bogie}}));
+  CHECK(bodies[2].poses == files.path);
   CHECK(bodies[3].poses[7].translation[0] == 7);
   CHECK(bodies[3].path_pose.back() == 150);
   REQUIRE(told.size() >= expected_told.size());
-  CHECK_THAT(told.front().text, Contains("v.json") && Contains("body"));
-}
-
-TEST_CASE("messages about a body's model name the body") {
-  const Files files;
-  std::vector<Message> told;
-  VehicleOptions options;
-  files.read(R"({"name": "a", "model": "fin.off"}, {"name": "b", "model": "fin.off", "at": 1})",
-             options, &told);
-  std::vector<std::string> surfaces;
+  check_says(told.front().text, "v.json ... body");
+  std::vector<std::string> surfaces;  // the messages about a body's model name the body
   for (const Message& message : told) {
     if (message.text.find("searched as a surface") != std::string::npos) {
       surfaces.push_back(message.body);
     }
   }
-  CHECK(surfaces == std::vector<std::string>{"a", "b"});
+  check_equal(surfaces, {"bogie", "path", "crane"});
 }
 
 TEST_CASE("options hold for all bodies, and threads change none") {
@@ -127,14 +117,10 @@ TEST_CASE("towed bodies of a file are those that follow gives, in any order") {
   CHECK(bodies[0].path_pose == bodies[2].path_pose);
   CHECK(bodies[2].path_pose.size() < files.path.size());
   CHECK(bodies[4].path_pose == bodies[3].path_pose);
-  VehicleOptions one;
-  one.threads = 1;
-  CHECK(hash_of_bodies(files.read(R"({"name": "a", "model": "line.xyz",
-                                      "towed": {"at": -1, "pivots": [4, 0]}})",
-                                  one)) == hash_of_bodies({{{.name = "a",
-                                                             .model = bodies[5].model,
-                                                             .poses = bodies[5].poses,
-                                                             .path_pose = bodies[5].path_pose}}}));
+  const auto alone =
+      files.read(R"({"name": "free", "model": "line.xyz", "towed": {"at": -1, "pivots": [4, 0]}})",
+                 {.threads = 1});
+  CHECK(hash_of_bodies(alone) == hash_of_bodies({{bodies[5]}}));
 }
 
 TEST_CASE("towed bodies are the same in feet") {
@@ -150,76 +136,68 @@ TEST_CASE("towed bodies are the same in feet") {
   options.model.environment_unit = kFoot;
   const auto feet = files.read(body, options);
   REQUIRE(feet[0].poses.size() == metres[0].poses.size());
-  double worst = 0;
   for (std::size_t i = 0; i < feet[0].poses.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      worst = std::max(worst, std::abs(feet[0].poses[i].translation[k] * kFoot -
-                                       metres[0].poses[i].translation[k]));
-    }
+    check_near(kFoot * feet[0].poses[i].position(), metres[0].poses[i].position(), 1e-6);
   }
-  CHECK(worst < 1e-6);
 }
 
 TEST_CASE("errors name the file and the key") {
   const Files files;
-  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "line.xyz", "pivots": [1, "x"]})"),
-                    Contains("v.json: bodies[0].pivots[1]: is \"x\", expected a length"));
-  CHECK_THROWS_AS(files.read(R"({"name": "a", "model": "none.xyz"})"), ResourceError);
-  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "none.xyz"})"),
-                    Contains("v.json: bodies[0].model: "));
+  const auto refused = [&](const std::string& body, const char* words,
+                           const VehicleOptions& options = {}) {
+    check_refused([&] { files.read(body, options); }, words);
+  };
+  const std::string none = R"({"name": "a", "model": "none.xyz"})";
+  refused(R"({"name": "a", "model": "line.xyz", "pivots": [1, "x"]})",
+          "v.json: bodies[0].pivots[1]: is \"x\", expected a length");
+  refused(none, "v.json: bodies[0].model: ");
+  CHECK_THROWS_AS(files.read(none), ResourceError);
   put_bytes(files.folder / "own.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n");
-  CHECK_THROWS_WITH(
-      files.read(R"({"name": "a", "model": "line.xyz", "trajectory": "own.txt"})"),
-      Contains("bodies[0].trajectory: ") && Contains("expected as many as the path: 151"));
+  refused(R"({"name": "a", "model": "line.xyz", "trajectory": "own.txt"})",
+          "bodies[0].trajectory: ... expected as many as the path: 151");
   VehicleOptions solid;
   solid.model.as = ModelAs::kSolid;
-  CHECK_THROWS_WITH(files.read(R"({"name": "a", "model": "line.xyz"})", solid),
-                    Contains("bodies[0].model: "));
+  refused(R"({"name": "a", "model": "line.xyz"})", "bodies[0].model: ", solid);
   CHECK_THROWS_AS(read_vehicle(files.folder / "no.json", files.path), ResourceError);
   CHECK_THROWS_AS(files.read(""), InputError);
 }
 
 TEST_CASE("a body whose station or pivots are far from the vehicle is warned of") {
-  ScratchFolder folder;
-  std::vector<Pose> path;
-  for (int i = 0; i <= 400; ++i) path.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.5 * i, 0, 0}});
-  put_bytes(folder / "wagon.xyz", "-5 -1 0\n5 1 3\n");
-  put_bytes(folder / "bogie.xyz", "-1.5 -1 0\n1.5 1 1\n");
-  const auto codes = [&](const std::string& bodies) {
-    put_bytes(folder / "v.json", "{\"bodies\": [" + bodies + "]}");
-    std::vector<Message> told;
-    read_vehicle(folder / "v.json", path, {}, &told);
-    std::string text;
-    for (const Message& message : told) {
-      if (message.severity == Message::Severity::kWarning) text += message.code + " ";
-    }
-    return text;
+  Files files;
+  files.path.clear();
+  for (int i = 0; i <= 400; ++i) files.path.push_back(translation({0.5 * i, 0, 0}));
+  put_bytes(files.folder / "wagon.xyz", "-5 -1 0\n5 1 3\n");
+  put_bytes(files.folder / "bogie.xyz", "-1.5 -1 0\n1.5 1 1\n");
+  const auto body = [](const std::string& name, const std::string& model, const std::string& more) {
+    return R"({"name": ")" + name + R"(", "model": ")" + model + R"(.xyz", )" + more + "}";
   };
-  const std::string wagon = R"({"name": "wagon", "model": "wagon.xyz", "pivots": [4, -4]})";
-  CHECK(codes(wagon).empty());
-  CHECK(codes(wagon + R"(, {"name": "front", "model": "bogie.xyz", "at": 4})").empty());
-  CHECK(codes(R"({"name": "front", "model": "bogie.xyz", "at": 10},
-                 {"name": "rear", "model": "bogie.xyz", "at": -10})")
-            .empty());
-  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -50})") == "body-far ");
-  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "pivots": [-46, -54]})") == "body-far ");
-  CHECK(codes(wagon + R"(, {"name": "rear", "model": "bogie.xyz", "at": -48})") == "body-far ");
+  const auto check_codes = [&](const std::string& bodies, const char* codes) {
+    CAPTURE(bodies);
+    std::vector<Message> told;
+    files.read(bodies, {}, &told);
+    std::erase_if(told, [](const Message& m) { return m.severity == Message::Severity::kNote; });
+    check_equal(codes_of(told), codes);
+  };
+  const std::string wagon = body("wagon", "wagon", R"("pivots": [4, -4])");
+  check_codes(wagon, "");
+  check_codes(wagon + "," + body("front", "bogie", R"("at": 4)"), "");
+  check_codes(body("front", "bogie", R"("at": 10)") + "," + body("rear", "bogie", R"("at": -10)"),
+              "");
+  check_codes(body("wagon", "wagon", R"("at": -50)"), "body-far");
+  check_codes(body("wagon", "wagon", R"("pivots": [-46, -54])"), "body-far");
+  check_codes(wagon + "," + body("rear", "bogie", R"("at": -48)"), "body-far");
   // Wagons in a row are one vehicle: none counts as far from the path.
-  CHECK(codes(wagon + R"(, {"name": "b", "model": "wagon.xyz", "at": -20},
-                           {"name": "c", "model": "wagon.xyz", "at": -40},
-                           {"name": "d", "model": "wagon.xyz", "at": -60})")
-            .empty());
-  const std::string truck = R"({"name": "truck", "model": "wagon.xyz"}, )";
-  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
-                          "towed": {"by": "truck", "at": -6, "pivots": [6, -4]}})")
-            .empty());
-  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
-                          "towed": {"by": "truck", "at": -60, "pivots": [6, -4]}})") ==
-        "body-far ");
-  CHECK(codes(truck + R"({"name": "a", "model": "wagon.xyz",
-                          "towed": {"by": "truck", "at": -6, "pivots": [60, 55]}})") ==
-        "body-far body-far ");
+  check_codes(wagon + "," + body("b", "wagon", R"("at": -20)") + "," +
+                  body("c", "wagon", R"("at": -40)") + "," + body("d", "wagon", R"("at": -60)"),
+              "");
+  const auto towed = [&](const std::string& at, const std::string& pivots) {
+    return R"({"name": "truck", "model": "wagon.xyz"},)" +
+           body("a", "wagon",
+                R"("towed": {"by": "truck", "at": )" + at + R"(, "pivots": )" + pivots + "}");
+  };
+  check_codes(towed("-6", "[6, -4]"), "");
+  check_codes(towed("-60", "[6, -4]"), "body-far");
+  check_codes(towed("-6", "[60, 55]"), "body-far, body-far");
   // 150 of 200 m: most of the path is not searched, though it is only its end.
-  CHECK(codes(R"({"name": "wagon", "model": "wagon.xyz", "at": -150})") ==
-        "body-off-path body-far ");
+  check_codes(body("wagon", "wagon", R"("at": -150)"), "body-off-path, body-far");
 }

@@ -8,21 +8,22 @@ using namespace clearway::test;
 
 namespace {
 
-/// FNV-1a with 64 bits over numbers as 8 little-endian bytes each, with the starting value of the
-/// known answers.
-class Fnv {
- public:
-  void add(std::int64_t number) {
+/// FNV-1a with 64 bits over the numbers of cells as 8 little-endian bytes each, with the starting
+/// value of the known answers.
+std::uint64_t hash_of(const SectionCells& cells) {
+  std::uint64_t hash = 1469598103934665603;
+  const auto add = [&](std::int64_t number) {
     const auto bits = static_cast<std::uint64_t>(number);
-    for (unsigned i = 0; i < 8; ++i) {
-      hash_ = (hash_ ^ (bits >> (8 * i) & 0xff)) * 0x100000001b3;
-    }
+    for (unsigned i = 0; i < 8; ++i) hash = (hash ^ (bits >> (8 * i) & 0xff)) * 0x100000001b3;
+  };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells.bin.empty()) add(cells.bin[i]);
+    add(cells.j[i]);
+    add(cells.k[i]);
+    add(cells.first_pose[i]);
   }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 1469598103934665603;
-};
+  return hash;
+}
 
 struct Street {
   Street() {
@@ -46,31 +47,14 @@ TEST_CASE("the section of the street has the known cells, and keeps what solids 
   SectionParameters asked{
       .rear = -2.25, .front = 2.25, .window = SectionWindow{-4, 4, 0, 5}, .cell = 0.02, .bin = 5};
   const Section known = street.find(asked);
-  Fnv whole, bins;
-  for (std::size_t i = 0; i < known.cells().size(); ++i) {
-    for (const std::int64_t number :
-         {std::int64_t{known.cells().j[i]}, std::int64_t{known.cells().k[i]},
-          std::int64_t{known.cells().first_pose[i]}}) {
-      whole.add(number);
-    }
-  }
-  const SectionCells& cells = known.data().bin_cells;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    for (const std::int64_t number :
-         {std::int64_t{cells.bin[i]}, std::int64_t{cells.j[i]}, std::int64_t{cells.k[i]},
-          std::int64_t{cells.first_pose[i]}}) {
-      bins.add(number);
-    }
-  }
   CHECK(known.cells().size() == 34'834);
-  CHECK(whole.value() == 0xc39a25dc107652d6);
-  CHECK(cells.size() == 166'753);
-  CHECK(bins.value() == 0x07d0d56c5dee2f06);
+  CHECK(hash_of(known.cells()) == 0xc39a25dc107652d6);
+  CHECK(known.data().bin_cells.size() == 166'753);
+  CHECK(hash_of(known.data().bin_cells) == 0x07d0d56c5dee2f06);
 
   asked.margin = 0.2;
   const Section section = street.find(asked);
-  const Store store(street.folder / "street.h5");
-  const Guarantee guarantee(store, street.path, section, street.folder);
+  const Guarantee guarantee(street.folder / "street.h5", street.path, section, street.folder);
   Random random(31);
   Verdicts verdicts;
   for (int i = 0; i < 100; ++i) {
@@ -81,47 +65,22 @@ TEST_CASE("the section of the street has the known cells, and keeps what solids 
   CHECK(verdicts.stopped > 15);
 }
 
-TEST_CASE("sound questions about a street cause no warning") {
+TEST_CASE("sound questions about a street and about alignments cause no warning") {
   const Street street;
-  const Store store(street.folder / "street.h5");
-  int asked = 0;
-  for (const auto& [rear, front] :
-       {std::pair{-2.25, 2.25}, {-1.0, 3.0}, {-2.5, 2.0}, {-1.5, 1.5}}) {
-    for (const double margin : {0.0, 0.1, 0.3}) {
-      for (const SectionWindow window : {SectionWindow{-4, 4, 0, 6}, {-2, 3, 0.42, 3}}) {
-        const SectionParameters question{
-            .rear = rear, .front = front, .window = window, .cell = 0.05, .margin = margin};
-        const SectionReport report =
-            find_section(store, street.path, question, street.folder / "section.h5",
-                         {.threads = 2, .overwrite = true});
-        INFO("from " << rear << " to " << front << ", margin " << margin);
-        for (const Message& warning : report.warnings) FAIL_CHECK(warning.text);
-        ++asked;
-      }
-    }
-  }
-  CHECK(asked == 24);
-}
-
-TEST_CASE("sound questions about alignments cause no warning") {
-  const ScratchFolder folder;
+  check_sound(street.folder / "street.h5", street.path,
+              {{-2.25, 2.25}, {-1, 3}, {-2.5, 2}, {-1.5, 1.5}}, {0, 0.1, 0.3},
+              {SectionWindow{-4, 4, 0, 6}, SectionWindow{-2, 3, 0.42, 3}});
   for (const char* name : {"UT-Alignment-Aplitop-1.xml", "PR_Twin_Branch_section_alignment.xml"}) {
-    AlignmentOptions options{.step = 0.1, .max_gap = 0.01};
-    std::vector<Pose> dense = read_alignment(data_folder() / "alignments" / name, options);
+    INFO(name);
+    std::vector<Pose> dense =
+        read_alignment(data_folder() / "alignments" / name, {.step = 0.1, .max_gap = 0.01});
     if (dense.size() > 2500) dense.resize(2500);
     const double* const first = dense.front().translation;
-    road_along(dense).convert_to(folder / "site.h5",
-                                 {std::round(first[0]), std::round(first[1]), 0});
+    const auto store = street.folder / "site.h5";
+    road_along(dense).convert_to(store, {std::round(first[0]), std::round(first[1]), 0});
     std::vector<Pose> path;
     for (std::size_t i = 150; i + 150 < dense.size(); i += 5) path.push_back(dense[i]);
     CHECK(path.size() > 50);
-    const Store store(folder / "site.h5");
-    for (const auto& [rear, front] : {std::pair{-2.25, 2.25}, {-6.0, 6.0}}) {
-      const SectionParameters question{.rear = rear, .front = front, .cell = 0.05, .margin = 0.1};
-      const SectionReport report = find_section(store, path, question, folder / "section.h5",
-                                                {.threads = 2, .overwrite = true});
-      INFO(name << ", from " << rear << " to " << front);
-      for (const Message& warning : report.warnings) FAIL_CHECK(warning.text);
-    }
+    check_sound(store, path, {{-2.25, 2.25}, {-6, 6}}, {0.1}, {std::nullopt});
   }
 }

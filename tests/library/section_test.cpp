@@ -12,64 +12,17 @@
 using namespace clearway;
 using namespace clearway::test;
 
-namespace {
-
-/// A tube of points around a path that bends, with a few points inside it.
-struct Tube {
-  explicit Tube(std::uint64_t seed, int poses = 40, double step = 0.4) {
-    Random random(seed);
-    for (int i = 0; i < poses; ++i) {
-      const double angle = 0.01 * i, radius = step / 0.01;
-      path.push_back(rotation({0, 0, 1}, angle,
-                              {radius * std::sin(angle), radius * (1 - std::cos(angle)), 0.5}));
-    }
-    std::vector<Vec3> points;
-    for (int i = 0; i < 6000; ++i) {
-      const Pose& pose = path[below(random, path.size())];
-      const double around = uniform(random, 0, 2 * M_PI);
-      const double radius = below(random, 400) == 0 ? uniform(random, 0.8, 2) : 2.2;
-      points.push_back(pose.rotated({uniform(random, -2, 2), radius * std::cos(around),
-                                     2 + radius * std::sin(around)}) +
-                       pose.position());
-    }
-    write_ply(folder / "tube.ply", points);
-    convert({folder / "tube.ply"}, folder / "tube.h5", {.cell_points = 512, .threads = 2});
-    asked = {.rear = -1.5,
-             .front = 2,
-             .window = SectionWindow{-3, 3, -0.5, 4.5},
-             .cell = 0.05,
-             .bin = 3,
-             .margin = 0.3};
-  }
-
-  SectionReport find(const SectionOptions& options = {.threads = 2, .overwrite = true}) const {
-    return find_section(Store(folder / "tube.h5"), path, asked, folder / "section.h5", options);
-  }
-
-  std::string bytes() const {
-    std::ifstream file(folder / "section.h5", std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), {}};
-  }
-
-  ScratchFolder folder;
-  std::vector<Pose> path;
-  SectionParameters asked;
-};
-
-}  // namespace
-
 TEST_CASE("a section keeps what solids are promised") {
   Verdicts verdicts;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Tube tube(seed);
     tube.find();
-    const Store store(tube.folder / "tube.h5");
-    const Section section(tube.folder / "section.h5");
-    const Guarantee guarantee(store, tube.path, section, tube.folder);
+    const Section section = tube.section();
     Random random(100 + seed);
     for (int i = 0; i < 40; ++i) {
-      guarantee.check(random_outline(random, 2, 0.3, uniform(random, 0.5, 2.3)),
-                      uniform(random, 0.01, 0.3), verdicts);
+      tube.guarantee(section, tube.path)
+          .check(random_outline(random, 2, 0.3, uniform(random, 0.5, 2.3)),
+                 uniform(random, 0.01, 0.3), verdicts);
     }
   }
   CHECK(verdicts.passes > 20);
@@ -82,8 +35,15 @@ TEST_CASE("between poses a pass is one on the ways, too") {
   const SectionReport report = tube.find();
   REQUIRE(report.motion);
   CHECK((*report.motion)[0] == Approx(0.4).margin(0.05));
-  const Store store(tube.folder / "tube.h5");
-  const Section section(tube.folder / "section.h5");
+  const Section section = tube.section();
+  std::vector<Pose> between;  // poses between the poses, on which the load moves as it turns
+  for (std::size_t k = 1; k < tube.path.size(); ++k) {
+    for (int n = 0; n < 4; ++n) {
+      const double t = 0.25 * n, angle = 0.01 * (static_cast<double>(k) - 1 + t);
+      const Pose &a = tube.path[k - 1], &b = tube.path[k];
+      between.push_back(rotation({0, 0, 1}, angle, (1 - t) * a.position() + t * b.position()));
+    }
+  }
   Random random(5);
   int passes = 0;
   for (int i = 0; i < 60; ++i) {
@@ -91,17 +51,7 @@ TEST_CASE("between poses a pass is one on the ways, too") {
     const double margin = uniform(random, 0.01, 0.2);
     if (section.check(outline, margin).verdict != SectionVerdict::kPasses) continue;
     ++passes;
-    // Poses between the poses, on which the load moves as it turns.
-    std::vector<Pose> between;
-    for (std::size_t k = 1; k < tube.path.size(); ++k) {
-      for (int n = 0; n < 4; ++n) {
-        const double t = 0.25 * n, angle = 0.01 * (static_cast<double>(k) - 1 + t);
-        const Pose &a = tube.path[k - 1], &b = tube.path[k];
-        between.push_back(rotation({0, 0, 1}, angle, (1 - t) * a.position() + t * b.position()));
-      }
-    }
-    const Guarantee guarantee(store, between, section, tube.folder);
-    CHECK_FALSE(guarantee.first_collision(outline, margin));
+    CHECK_FALSE(tube.guarantee(section, between).first_collision(outline, margin));
   }
   CHECK(passes > 5);
 }
@@ -111,11 +61,6 @@ namespace {
 /// A road with posts beside a path whose steps are longer than a bin, and a table of outlines.
 struct LongSteps {
   static constexpr double kRear = -1.5, kFront = 2, kBin = 3;
-
-  struct Step {
-    Pose pose;
-    double angle;
-  };
 
   explicit LongSteps(Random& random) {
     Vec3 at{0, 0, 0};
@@ -160,16 +105,20 @@ struct LongSteps {
                     (1 - t) * path[i].position() + t * path[i + 1].position());
   }
 
+  /// Whether a post is in the load of a row at a place, made longer and wider, and above a height.
+  bool holds_post(const OutlineRow& row, const Pose& place, double along, double across,
+                  double low) const {
+    return std::ranges::any_of(posts, [&](const Vec3& post) {
+      const auto [x, y, z] = place_of(place, post);
+      return x > kRear - along && x < kFront + along && std::abs(y) < row.outline[2].y + across &&
+             z > low;
+    });
+  }
+
   /// Whether a post is surely in the load of a row at a place of the row, in steps of 2 cm.
   bool is_hit(const OutlineRow& row) const {
     for (double s = row.from; s < std::min(row.to, length()); s += 0.02) {
-      const Pose place = at_chainage(s);
-      for (const Vec3& post : posts) {
-        const auto [x, y, z] = place_of(place, post);
-        if (x > kRear && x < kFront && std::abs(y) < row.outline[2].y - 0.03 && z > 0.5) {
-          return true;
-        }
-      }
+      if (holds_post(row, at_chainage(s), 0, -0.03, 0.5)) return true;
     }
     return false;
   }
@@ -178,19 +127,14 @@ struct LongSteps {
   bool may_be_hit(const OutlineRow& row, const SectionData& section) const {
     const double from = std::floor(row.from / kBin) * kBin;
     const double to = (std::floor(std::nextafter(row.to, 0) / kBin) + 1) * kBin;
+    const double along = (*section.motion)[0] / 2 + 1e-6;
+    const double across = (*section.motion)[1] / 2 + 2 * section.parameters.cell;
     for (std::size_t i = 0; i < path.size(); ++i) {
       const double before = i == 0 ? 0 : (chainage[i - 1] + chainage[i]) / 2;
       const double after = i + 1 == path.size() ? length() : (chainage[i] + chainage[i + 1]) / 2;
       const bool is_last = row.to >= length();
       if (after < from || (before >= to && !is_last)) continue;
-      for (const Vec3& post : posts) {
-        const auto [x, y, z] = place_of(path[i], post);
-        const double along = (*section.motion)[0] / 2 + 1e-6;
-        const double across = (*section.motion)[1] / 2 + 2 * section.parameters.cell;
-        if (x > kRear - along && x < kFront + along && std::abs(y) < row.outline[2].y + across) {
-          return true;
-        }
-      }
+      if (holds_post(row, path[i], along, across, -1)) return true;
     }
     return false;
   }
@@ -261,33 +205,52 @@ TEST_CASE("one more point stops the load at the pose that the search finds first
   Tube tube(6);
   tube.asked.margin = 0.1;
   tube.find();
-  Section section(tube.folder / "section.h5");
   const std::vector<OutlinePoint> outline{{-0.4, 1.6}, {0.4, 1.6}, {0.4, 2.4}, {-0.4, 2.4}};
-  REQUIRE(section.check(outline, 0.05).verdict == SectionVerdict::kPasses);
+  REQUIRE(tube.section().check(outline, 0.05).verdict == SectionVerdict::kPasses);
   const Pose& at = tube.path[20];
   write_ply(tube.folder / "one.ply", std::vector<Vec3>{at.rotated({0.2, 0.2, 2}) + at.position()});
   convert({tube.folder / "tube.ply", tube.folder / "one.ply"}, tube.folder / "tube.h5",
           {.cell_points = 512, .threads = 2, .overwrite = true});
   tube.find();
-  section = Section(tube.folder / "section.h5");
+  const Section section = tube.section();
   const SectionCheck check = section.check(outline, 0.05);
   REQUIRE(check.verdict == SectionVerdict::kStopped);
-  const Store store(tube.folder / "tube.h5");
   // The cell is well inside of the outline, so that margins change nothing across; along x the
   // section counts what is within its margin.
   const double reach = section.data().parameters.margin;
   CHECK(check.stop->first_pose ==
-        Guarantee(store, tube.path, section, tube.folder).first_collision(outline, reach));
+        tube.guarantee(section, tube.path).first_collision(outline, reach));
 }
 
-TEST_CASE("a section's bytes depend on neither threads nor memory") {
+TEST_CASE("a section's bytes depend on neither threads nor memory nor device") {
   const Tube tube(7);
-  tube.find({.threads = 1, .overwrite = true});
+  const SectionReport on_cpu = tube.find({.device = Device::kCpu, .threads = 1, .overwrite = true});
+  CHECK(on_cpu.device == Device::kCpu);
+  CHECK(on_cpu.device_name == "the CPU");
+  CHECK(on_cpu.peak_device_bytes == 0);
+  CHECK(!on_cpu.estimate);
   const std::string bytes = tube.bytes();
   for (const int threads : {2, 3, 7}) {
-    tube.find({.threads = threads, .memory_bytes = 64 << 20, .overwrite = true});
-    CHECK((tube.bytes() == bytes));
+    // Few points do not pay for the start of a GPU.
+    const SectionReport report =
+        tube.find({.threads = threads, .memory_bytes = 64 << 20, .overwrite = true});
+    CHECK(report.device == Device::kCpu);
+    check_same(tube.bytes(), bytes);
   }
+  // A machine without a GPU refuses one, so that nobody takes the CPU's time for that of a GPU.
+  SectionOptions on_gpu{.device = Device::kCuda, .threads = 2, .overwrite = true};
+  try {
+    const SectionReport report = tube.find(on_gpu);
+    CHECK(report.device == Device::kCuda);
+    CHECK(report.peak_device_bytes > 0);
+    check_same(tube.bytes(), bytes);
+    on_gpu.device_memory_bytes = 100000;
+    check_refused([&] { tube.find(on_gpu); }, "device memory is too little");
+  } catch (const ResourceError& error) {
+    check_says(error.what(), "device cuda");
+  }
+  CHECK_THROWS_WITH(tube.find({.gpus = {1023}, .overwrite = true}),
+                    Contains("GPU 1023") || Contains("device cuda"));
 }
 
 TEST_CASE("too little memory is refused with a bin that fits") {
@@ -304,44 +267,43 @@ TEST_CASE("too little memory is refused with a bin that fits") {
     enough.memory_bytes = static_cast<std::uint64_t>(error.amount());
     CHECK_NOTHROW(tube.find(enough));
   }
-  const std::size_t at = message.find("bins of ");
-  REQUIRE(at != std::string::npos);
   const std::size_t last = message.rfind("bins of ");
+  REQUIRE(last != std::string::npos);
   tube.asked.bin = std::stod(message.substr(last + 8));
   CHECK_NOTHROW(tube.find(little));
   tube.asked.cell = 0.001;
-  CHECK_THROWS_WITH(tube.find(little), Contains("larger cells or a smaller window take less"));
+  check_refused([&] { tube.find(little); }, "larger cells or a smaller window take less");
 }
 
 TEST_CASE("a damaged section is refused wherever it is damaged") {
   const Tube tube(9, 10);
   tube.find();
   const std::string bytes = tube.bytes();
-  const SectionCells cells = Section(tube.folder / "section.h5").cells();
+  const SectionCells cells = tube.section().cells();
   int refused = 0;
   for (std::size_t at = 0; at < bytes.size(); at += 1 + bytes.size() / 400) {
     std::string changed = bytes;
     changed[at] = static_cast<char>(changed[at] ^ 0x55);
-    std::ofstream(tube.folder / "section.h5", std::ios::binary) << changed;
+    put_bytes(tube.folder / "section.h5", changed);
     try {
-      const Section read(tube.folder / "section.h5");
+      const Section read = tube.section();
       CHECK((read.cells() == cells));  // a byte that is not used
     } catch (const Error& error) {
       ++refused;
-      CHECK_THAT(error.what(), Contains("section.h5"));
+      check_says(error.what(), "section.h5");
     }
   }
   CHECK(refused > 100);
-  std::ofstream(tube.folder / "section.h5", std::ios::binary) << bytes.substr(0, bytes.size() / 2);
-  CHECK_THROWS_AS(Section(tube.folder / "section.h5"), InputError);
-  CHECK_THROWS_WITH(Section(tube.folder / "tube.h5"), Contains("is not a section"));
+  put_bytes(tube.folder / "section.h5", bytes.substr(0, bytes.size() / 2));
+  CHECK_THROWS_AS(tube.section(), InputError);
+  check_refused([&] { Section(tube.folder / "tube.h5"); }, "is not a section");
 }
 
 TEST_CASE("pivots give the load chords of the path, and poses stay those of the path") {
   Tube tube(10);
   tube.asked.pivots = BodyPivots{1.2, -0.8};
   tube.find();
-  const SectionData data = Section(tube.folder / "section.h5").data();
+  const SectionData data = tube.section().data();
   CHECK(data.poses == 40);
   CHECK(data.load_poses < 40);
   REQUIRE(data.parameters.pivots);
@@ -354,84 +316,52 @@ TEST_CASE("pivots give the load chords of the path, and poses stay those of the 
 
 TEST_CASE("questions without a section are refused, and doubtful ones are never a pass") {
   Tube tube(11);
+  const std::vector<Pose> path = tube.path;
   tube.path[3].rotation[0] *= 1.01;
-  CHECK_THROWS_WITH(tube.find(), Contains("pose 3 stretches lengths"));
-  tube.path = Tube(11).path;
+  check_refused([&] { tube.find(); }, "pose 3 stretches lengths");
+  tube.path = path;
   tube.path[5] = {{0, 0, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 0}};
   CHECK_THROWS_AS(tube.find(), UsageError);
 
   const std::vector<OutlinePoint> outline{{-0.5, 1.5}, {0.5, 1.5}, {0.5, 2.5}, {-0.5, 2.5}};
-  const auto verdict = [&] {
-    return Section(tube.folder / "section.h5").check(outline, 0).verdict;
+  const auto codes_in_doubt = [&] {
+    const std::string codes = codes_of(tube.find().warnings);
+    CHECK(tube.section().check(outline, 0).verdict == SectionVerdict::kUnknown);
+    return codes;
   };
   tube.path.clear();
-  CHECK(tube.find().warnings.at(0).code == "no-poses");
-  CHECK(verdict() == SectionVerdict::kUnknown);
-  tube.path = Tube(11).path;
+  check_says(codes_in_doubt(), "no-poses");
+  tube.path = path;
   for (Pose& pose : tube.path) pose.translation[0] += 5000;
-  const SectionReport far = tube.find();
-  CHECK(
-      std::ranges::any_of(far.warnings, [](const Message& m) { return m.code == "out-of-reach"; }));
-  CHECK(verdict() == SectionVerdict::kUnknown);
-  CHECK_THROWS_WITH(tube.find({.threads = 1, .overwrite = true, .strict = true}),
-                    Contains("strict"));
-  tube.path = Tube(11).path;
+  check_says(codes_in_doubt(), "out-of-reach");
+  check_refused([&] { tube.find({.threads = 1, .overwrite = true, .strict = true}); }, "strict");
+  tube.path = path;
   tube.asked.ignore_boxes = {{{-1e4, -1e4, -1e4}, {1e4, 1e4, 1e4}}};
-  tube.find();
-  CHECK(verdict() == SectionVerdict::kUnknown);
-  CHECK_THROWS_WITH(tube.find({.threads = 1}), Contains("section.h5"));  // it exists
+  codes_in_doubt();
+  check_refused([&] { tube.find({.threads = 1}); }, "section.h5");  // it exists
 }
 
 TEST_CASE("tables of a section are written as text") {
   const Tube tube(12);
   tube.find();
-  const Section section(tube.folder / "section.h5");
-  const auto lines = [&](SectionTable table) {
+  const Section section = tube.section();
+  const auto check_table = [&](SectionTable table, std::size_t rows, const std::string& header) {
     export_section(section, table, tube.folder / "t.csv", {.band = 0.5, .base = 0}, true);
     std::ifstream file(tube.folder / "t.csv");
-    std::vector<std::string> out;
+    std::vector<std::string> lines;
     for (std::string line; std::getline(file, line);) {
-      if (!line.starts_with("#")) out.push_back(line);
+      if (!line.starts_with("#")) lines.push_back(line);
     }
-    return out;
+    CHECK(lines.size() == 1 + rows);
+    CHECK(lines[0].starts_with(header));
   };
-  CHECK(lines(SectionTable::kCells).at(0) == "j,k,first_pose");
-  CHECK(lines(SectionTable::kCells).size() == 1 + section.cells().size());
-  CHECK(lines(SectionTable::kBinCells).size() == 1 + section.data().bin_cells.size());
-  CHECK(lines(SectionTable::kBands).at(0) ==
-        "z_from,z_to,left,left_pose,left_station,right,right_pose,right_station,symmetric_width");
-  CHECK(lines(SectionTable::kBands).size() == 10);
-  CHECK(lines(SectionTable::kBoxes).at(0) == "top,left,right,symmetric_width");
-  CHECK(lines(SectionTable::kStations).size() == 1 + 9 * section.data().bins.size());
+  check_table(SectionTable::kCells, section.cells().size(), "j,k,first_pose");
+  check_table(SectionTable::kBinCells, section.data().bin_cells.size(), "");
+  check_table(SectionTable::kBands, 9,
+              "z_from,z_to,left,left_pose,left_station,right,right_pose,right_station,"
+              "symmetric_width");
+  check_table(SectionTable::kBoxes, 9, "top,left,right,symmetric_width");
+  check_table(SectionTable::kStations, 9 * section.data().bins.size(), "");
   export_section_outline(section, tube.folder / "o.dxf", {.band = 0.25, .base = 1.75});
   CHECK(std::filesystem::file_size(tube.folder / "o.dxf") > 200);
-}
-
-TEST_CASE("a section has the same bytes on every device") {
-  const Tube tube(13);
-  const SectionReport on_cpu = tube.find({.device = Device::kCpu, .threads = 2, .overwrite = true});
-  CHECK(on_cpu.device == Device::kCpu);
-  CHECK(on_cpu.device_name == "the CPU");
-  CHECK(on_cpu.peak_device_bytes == 0);
-  CHECK(!on_cpu.estimate);
-  const std::string bytes = tube.bytes();
-  CHECK(tube.find().device == Device::kCpu);  // few points do not pay for the start of a GPU
-  CHECK(tube.bytes() == bytes);
-  // A machine without a GPU refuses one, so that nobody takes the CPU's time for that of a GPU.
-  try {
-    const SectionReport on_gpu =
-        tube.find({.device = Device::kCuda, .threads = 2, .overwrite = true});
-    CHECK(on_gpu.device == Device::kCuda);
-    CHECK(on_gpu.peak_device_bytes > 0);
-    CHECK(tube.bytes() == bytes);
-    CHECK_THROWS_WITH(tube.find({.device = Device::kCuda,
-                                 .threads = 2,
-                                 .device_memory_bytes = 100000,
-                                 .overwrite = true}),
-                      Contains("device memory is too little"));
-  } catch (const ResourceError& error) {
-    CHECK_THAT(error.what(), Contains("device cuda"));
-  }
-  CHECK_THROWS_WITH(tube.find({.gpus = {1023}, .overwrite = true}),
-                    Contains("GPU 1023") || Contains("device cuda"));
 }

@@ -57,42 +57,23 @@ struct GlobalState {
   std::string locale;
 };
 
-/// Sends standard output and error to a file while it lives.
-class Captured {
- public:
-  explicit Captured(const std::filesystem::path& file) : file_(file) {
-    std::cout.flush();  // text of the test program itself
-    const int into = ::open(file.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
-    for (int k = 0; k < 2; ++k) {
-      kept_[k] = ::dup(k + 1);
-      ::dup2(into, k + 1);
-    }
-    ::close(into);
+/// What a call prints to standard output and error.
+template <typename Call>
+std::string printed_by(const std::filesystem::path& file, const Call& call) {
+  std::cout.flush();  // text of the test program itself
+  const int into = ::open(file.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+  const std::array kept{::dup(1), ::dup(2)};
+  for (const int stream : {1, 2}) ::dup2(into, stream);
+  ::close(into);
+  call();
+  std::cout.flush();
+  std::fflush(nullptr);
+  for (std::size_t k = 0; k < 2; ++k) {
+    ::dup2(kept[k], static_cast<int>(k) + 1);
+    ::close(kept[k]);
   }
-  Captured(const Captured&) = delete;
-  Captured& operator=(const Captured&) = delete;
-  ~Captured() { restore(); }
-
-  std::string text() {
-    restore();
-    return bytes_of(file_);
-  }
-
- private:
-  void restore() {
-    std::cout.flush();
-    std::fflush(nullptr);
-    for (int k = 0; k < 2; ++k) {
-      if (kept_[k] < 0) continue;
-      ::dup2(kept_[k], k + 1);
-      ::close(kept_[k]);
-      kept_[k] = -1;
-    }
-  }
-
-  std::filesystem::path file_;
-  std::array<int, 2> kept_{};
-};
+  return bytes_of(file);
+}
 
 /// Calls every function of the library, also in ways that fail.
 void use_all(const ApiScene& scene) {
@@ -144,9 +125,7 @@ TEST_CASE("nothing global is changed for the caller, and nothing printed") {
   H5Eset_auto2(H5E_DEFAULT, print_error, &printed_errors);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 3);
   const GlobalState before;
-  Captured captured(scene.folder / "printed.txt");
-  use_all(scene);
-  CHECK(captured.text() == "");
+  CHECK(printed_by(scene.folder / "printed.txt", [&] { use_all(scene); }) == "");
   CHECK((GlobalState() == before));
   CHECK(printed_errors == 0);
   H5Eset_auto2(H5E_DEFAULT, print, print_data);

@@ -17,6 +17,14 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kWanted = 1024 * kMiB;
 constexpr std::uint64_t kUnusable = 0;
 
+MessageLog silent() {
+  static const MessageCallback nobody;
+  static std::vector<Message> warnings;
+  return {nobody, warnings};
+}
+
+CudaDevice gpu(int index, std::uint64_t free) { return {index, "Some GPU", 80 * kWanted, free}; }
+
 /// GPUs, given by their free memory, and which of them were opened.
 struct Machine {
   std::vector<std::uint64_t> free_bytes;
@@ -24,73 +32,57 @@ struct Machine {
 
   int count() const { return static_cast<int>(free_bytes.size()); }
   OpenDevice open() {
-    return [this](int gpu) {
-      opened.push_back(gpu);
-      const std::uint64_t free = free_bytes.at(static_cast<std::size_t>(gpu));
-      if (free == kUnusable) throw ResourceError("no context on " + std::to_string(gpu));
-      return CudaDevice{gpu, "Some GPU", 80 * kWanted, free};
+    return [this](int index) {
+      opened.push_back(index);
+      const std::uint64_t free = free_bytes.at(static_cast<std::size_t>(index));
+      if (free == kUnusable) throw ResourceError("no context on " + std::to_string(index));
+      return gpu(index, free);
     };
   }
+  CudaDevice one() { return one_with_room(count(), open(), kWanted, silent()); }
+  /// The GPUs that are chosen where nobody asks for a device.
+  std::vector<int> automatic() { return automatic_choice(count(), open(), kWanted, silent()).gpus; }
 };
 
-MessageLog silent() {
-  static const MessageCallback nobody;
-  static std::vector<Message> warnings;
-  return {nobody, warnings};
-}
+using Gpus = std::vector<int>;
 
 }  // namespace
 
-TEST_CASE("the first GPU with all the memory that is wanted is taken, and no further one opened") {
+TEST_CASE("the first GPU with all the memory that is wanted is taken, or else the roomiest") {
   Machine machine{{100 * kMiB, 2 * kWanted, 3 * kWanted}};
-  check_equal(one_with_room(machine.count(), machine.open(), kWanted, silent()).index, 1);
-  CHECK(machine.opened == std::vector{0, 1});
-}
-
-TEST_CASE("where no GPU has all that is wanted, the one with the most is the last one opened") {
-  // A twentieth of a GPU's memory is left to others.
-  Machine machine{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};
-  const DeviceChoice choice =
-      choice_of({one_with_room(machine.count(), machine.open(), kWanted, silent())}, kWanted);
-  check_equal(machine.opened.back(), 2);
-  CHECK(choice.gpus == std::vector{2});
+  check_equal(machine.one().index, 1);
+  CHECK(machine.opened == Gpus{0, 1});
+  // A twentieth of a GPU's memory is left to others. The one that is taken is the last one opened.
+  Machine tight{{300 * kMiB, 500 * kMiB, kWanted, 400 * kMiB}};
+  const DeviceChoice choice = choice_of({tight.one()}, kWanted);
+  check_equal(tight.opened.back(), 2);
+  CHECK(choice.gpus == Gpus{2});
   CHECK(choice.memory_bytes < kWanted);
   CHECK(choice.memory_bytes > kWanted / 10 * 9);
   check_says(choice.short_device, "GPU 2 ... free");
 }
 
-TEST_CASE("a GPU that cannot be used does not hide the others") {
-  Machine machine{{kUnusable, 500 * kMiB, kUnusable}};
-  check_equal(one_with_room(machine.count(), machine.open(), kWanted, silent()).index, 1);
-  CHECK(automatic_choice(machine.count(), machine.open(), kWanted, silent()).gpus ==
-        std::vector{1});
-
-  Machine broken{{kUnusable, kUnusable}};
-  CHECK_THROWS_WITH(one_with_room(broken.count(), broken.open(), kWanted, silent()),
-                    "no context on 1");
-  CHECK_FALSE(automatic_choice(broken.count(), broken.open(), kWanted, silent()).is_cuda());
+TEST_CASE("a GPU that cannot be used, or has no room, does not hide the others") {
+  Machine machine{{kUnusable, 500 * kMiB, kUnusable}}, broken{{kUnusable, kUnusable}};
+  check_equal(machine.one().index, 1);
+  CHECK(machine.automatic() == Gpus{1});
+  check_refused([&] { broken.one(); }, "no context on 1");
+  // The CPU is taken where no GPU has room.
+  CHECK(broken.automatic() == Gpus{});
+  CHECK(Machine{{}}.automatic() == Gpus{});
+  CHECK(Machine{{100 * kMiB, 200 * kMiB}}.automatic() == Gpus{});
+  CHECK(Machine{{100 * kMiB, 300 * kMiB}}.automatic() == Gpus{1});
 }
 
 TEST_CASE("of several GPUs the one with the least free bounds what is taken of each") {
-  const auto gpu = [](int index, std::uint64_t free) {
-    return CudaDevice{index, "Some GPU", 80 * kWanted, free};
-  };
   const DeviceChoice roomy = choice_of({gpu(0, 4 * kWanted), gpu(3, 2 * kWanted)}, kWanted);
-  CHECK(roomy.gpus == std::vector{0, 3});
+  CHECK(roomy.gpus == Gpus{0, 3});
   CHECK(roomy.memory_bytes == kWanted);
   CHECK(roomy.short_device.empty());
   const DeviceChoice tight =
       choice_of({gpu(0, 600 * kMiB), gpu(1, 200 * kMiB), gpu(2, 4 * kWanted)}, kWanted);
   CHECK(tight.memory_bytes == 190 * kMiB);
   check_says(tight.short_device, "GPU 1 ... 200");
-}
-
-TEST_CASE("the CPU is taken where there is no GPU, or none with room") {
-  Machine none{{}}, full{{100 * kMiB, 200 * kMiB}}, room{{100 * kMiB, 300 * kMiB}};
-  CHECK_FALSE(automatic_choice(none.count(), none.open(), kWanted, silent()).is_cuda());
-  CHECK_FALSE(automatic_choice(full.count(), full.open(), kWanted, silent()).is_cuda());
-  const DeviceChoice choice = automatic_choice(room.count(), room.open(), kWanted, silent());
-  CHECK(choice.gpus == std::vector{1});
 }
 
 // The choice between CPU and GPU by estimate.
@@ -111,14 +103,10 @@ bool pays(const Workload& work, const QueryParameters& query, int threads) {
 
 }  // namespace
 
-TEST_CASE("a GPU pays for many points and not for few") {
-  const QueryParameters set{.radius = 0.1};
-  CHECK_FALSE(pays(work_of(1000), set, 16));
-  CHECK(pays(work_of(1e9), set, 16));
-}
-
-TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
+TEST_CASE("a GPU pays for many points, for fewer with fewer threads and with clearances") {
   QueryParameters query{.radius = 0.1};
+  CHECK_FALSE(pays(work_of(1000), query, 16));
+  CHECK(pays(work_of(1e9), query, 16));
   Workload work = work_of(1000);
   while (!pays(work, query, 2)) work.reached_points *= 1.1;
   CHECK_FALSE(pays(work, query, 64));
@@ -126,6 +114,8 @@ TEST_CASE("a GPU pays earlier with fewer threads and with clearances") {
   CHECK_FALSE(pays(work, query, 2));
   query.clearance = 0.1;
   CHECK(pays(work, query, 2));
+  CHECK(surely_many_points(16) > surely_many_points(2));
+  CHECK(surely_many_points(0) > 0);
 }
 
 TEST_CASE("bodies take as long as one after the other, and the GPU starts once") {
@@ -146,9 +136,4 @@ TEST_CASE("a GPU pays for few points with many beams, which are followed once fo
   CHECK(pays(bodies[0], query, 16));
   const double one = estimate_devices({bodies.data(), 1}, query, 16).cpu;
   CHECK(estimate_devices(bodies, query, 16).cpu < 1.1 * one);
-}
-
-TEST_CASE("more threads need more points before a GPU is started ahead") {
-  CHECK(surely_many_points(16) > surely_many_points(2));
-  CHECK(surely_many_points(0) > 0);
 }

@@ -6,11 +6,10 @@
 
 #include "clearway/error.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "search/line_of_points.hpp"
 #include "stream/search_journal.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/result_fixture.hpp"
-#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -42,17 +41,9 @@ class MadeUpKind final : public CpuSweepKindOf<Vec3> {
 };
 
 /// A search with a model of one point that goes along a line of points.
-class Line {
- public:
-  Line() {
-    std::vector<Quantum> points;
-    for (std::int32_t i = 0; i < 2000; ++i) points.push_back({10 * i, 0, 0});
-    write_las(folder_ / "line.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
-    convert_quietly(conversion_of({folder_ / "line.las"}, folder_ / "line.h5"));
-    store.emplace(folder_ / "line.h5");
-    for (int i = 0; i < 100; ++i) {
-      query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.1 * i, 0, 0}});
-    }
+struct Line : LineOfPoints {
+  Line() : LineOfPoints(2000, {{0, 0, 0}}, 100) {
+    query.first_pose = true;
     options.threads = 2;
     kind.emplace(*store, query, options, EngineSettings{});
   }
@@ -67,8 +58,8 @@ class Line {
     const auto open = [&] {
       ++journals_opened;
       const std::string name = "journal " + std::to_string(journals_opened);
-      journal_.emplace(folder_ / name, JournalIdentity{}, nullptr, *store, query, 1e9);
-      keep = keep_answer(*store, journal_->rows(), no_profile, &*journal_);
+      journal.emplace(folder / name, JournalIdentity{}, nullptr, *store, query, 1e9);
+      keep = keep_answer(*store, journal->rows(), no_profile, &*journal);
     };
     search_pages(*store,
                  {.query = query,
@@ -77,7 +68,7 @@ class Line {
                   .collect = [&](std::span<const PlannedCell> cells,
                                  const PageResult& page) { keep(cells, page); }},
                  {.made = open}, progress, report, log);
-    return journal_->rows().points(PointQuestion::kHits);
+    return journal->rows().points(PointQuestion::kHits);
   }
 
   /// The error with which the search is refused; nullopt where it runs.
@@ -111,13 +102,7 @@ class Line {
     kind->on_device = [](const SlotLayout& layout) { return (5 - layout.slots) * 100 * kMebibyte; };
   }
 
- private:
-  ScratchFolder folder_;
-  std::optional<SearchJournal> journal_;
-
- public:
-  std::optional<StoreReader> store;
-  Query query{{{0, 0, 0}}, {}, {.radius = 0.1, .first_pose = true}};
+  std::optional<SearchJournal> journal;
   SearchOptions options;
   std::optional<MadeUpKind> kind;
   SearchReport report;
@@ -126,23 +111,18 @@ class Line {
 
 }  // namespace
 
-TEST_CASE("a run asks for its journal once, after its engine was made") {
-  Line line;
-  CHECK(line.run() > 0);
-  check_equal(line.journals_opened, 1);
-  line.needed(1, 1);
-  check_equal(line.journals_opened, 1);
-}
-
-TEST_CASE("an engine has no more slots than the plan has pages") {
+TEST_CASE("a run opens its journal once its engine was made, with no more slots than pages") {
   Line line;
   line.kind->changed_needs().most_slots = 64;
   CHECK(line.run() > 0);
+  check_equal(line.journals_opened, 1);
   CHECK(line.report.pages < 64);
   CHECK(line.report.slots == line.report.pages);
   line.kind->changed_needs().most_slots = 4;
   CHECK(line.run() > 0);
   check_equal(line.report.slots, 4);
+  line.needed(1, 1);
+  check_equal(line.journals_opened, 2);
 }
 
 TEST_CASE("layouts that fit either memory but not both are refused with a budget that works") {

@@ -1,38 +1,22 @@
 // The search of a section against every pair of a point and a pose, by the definitions of
 // docs/design/section.md alone.
-#include "search/section.hpp"
-
 #include <cmath>
-#include <tuple>
 
 #include "search/block_cells.hpp"
-#include "support/catch.hpp"
+#include "search/found_cells.hpp"
 #include "support/compare.hpp"
-#include "support/section_scene.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-/// The blocked cells of the search, and that they are written in ascending order.
 Blocked by_search(const SectionScene& scene, int threads, double along) {
   SectionOfScene search(scene, along);
   NoProgress progress;
   block_cells(search.cloud, IgnoredPoints(search.cloud, search.query), search.section, threads,
               progress);
-  SectionCells cells;
-  for (std::size_t bin = 0; bin < search.bins.size(); ++bin) {
-    add_cells_of_bin(search.lattice, search.maps.firsts(bin),
-                     static_cast<std::uint32_t>(search.bins[bin].number), cells);
-  }
-  Blocked blocked;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    const auto at = std::tuple(cells.bin[i], cells.k[i], cells.j[i]);
-    CHECK((blocked.empty() || blocked.rbegin()->first < at));
-    blocked.emplace(at, cells.first_pose[i]);
-  }
-  return blocked;
+  return found_cells(search.lattice, search.bins, search.maps);
 }
 
 }  // namespace
@@ -87,28 +71,22 @@ TEST_CASE("a bin is a stretch of the chainage, and only at poses some are left o
 }
 
 TEST_CASE("what has no section is refused") {
-  SectionParameters asked{
-      .rear = -1, .front = 1, .window = SectionWindow{-1, 1, 0, 1}, .cell = 0.5, .bin = 5};
-  CHECK_NOTHROW(section_lattice(asked, 0));
-  const auto refused = [](SectionParameters changed, const std::string& why) {
-    check_refused([&] { return section_lattice(changed, 0); }, why);
+  const auto refused = [](double rear, double front, SectionWindow window, double cell,
+                          const char* words) {
+    check_refused(
+        [&] {
+          section_lattice({.rear = rear, .front = front, .window = window, .cell = cell, .bin = 5},
+                          0);
+        },
+        words);
   };
-  SectionParameters changed = asked;
-  changed.rear = 1.5;
-  refused(changed, "its rear, and then its front");
-  changed = asked;
-  changed.front = NAN;
-  refused(changed, "its rear, and then its front");
-  changed = asked;
-  changed.window = SectionWindow{1, 1, 0, 1};
-  refused(changed, "is empty");
-  changed.window = SectionWindow{-1, 1, 0, INFINITY};
-  refused(changed, "is empty");
-  changed = asked;
-  changed.cell = 1e-9;
-  refused(changed, "too small for the window");
-  changed.cell = 0;
-  refused(changed, "above 0");
+  const SectionWindow window{-1, 1, 0, 1};
+  refused(1.5, 1, window, 0.5, "its rear, and then its front");
+  refused(-1, NAN, window, 0.5, "its rear, and then its front");
+  refused(-1, 1, {1, 1, 0, 1}, 0.5, "is empty");
+  refused(-1, 1, {-1, 1, 0, INFINITY}, 0.5, "is empty");
+  refused(-1, 1, window, 1e-9, "too small for the window");
+  refused(-1, 1, window, 0, "above 0");
 }
 
 TEST_CASE("the motion of a load is that of the corners of its range and window") {

@@ -24,38 +24,37 @@ std::vector<Vec3> cube(Keep keep) {
   return points;
 }
 
-ModelView view_of(const std::vector<Vec3>& points, int axis) {
-  return {points, box_of(points), axis, 0.2};
+ModelView view_of(const std::vector<Vec3>& points, int axis, double cell = 0.2) {
+  return {points, box_of(points), axis, cell};
 }
+
+const Vec3 kMiddle{1, 1, 1};
 
 }  // namespace
 
-TEST_CASE("a closed cube is closed from all sides and encloses its middle") {
-  const auto points = cube([](int, int, int) { return true; });
+TEST_CASE("a model is open along an axis along which one sees through it, and closed from others") {
   for (int axis = 0; axis < 3; ++axis) {
     CAPTURE(axis);
-    const ModelView view = view_of(points, axis);
+    const auto closed = cube([](int, int, int) { return true; });
+    const ModelView view = view_of(closed, axis);
     check_equal(view.open_share(), 0);
-    CHECK(view.encloses({1, 1, 1}, 0.1));
-    CHECK_FALSE(view.encloses({1, 1, 1}, 1.01));
-    Vec3 near{1, 1, 1};
+    CHECK(view.encloses(kMiddle, 0.1));
+    CHECK_FALSE(view.encloses(kMiddle, 1.01));
+    Vec3 near = kMiddle;
     near[axis] = 0.05;
     CHECK_FALSE(view.encloses(near, 0.1));
-  }
-}
-
-TEST_CASE("a cube without two opposite sides is open along that axis alone") {
-  for (int axis = 0; axis < 3; ++axis) {
-    CAPTURE(axis);
-    const auto points = cube([&](int i, int j, int k) {
+    const auto tube = cube([&](int i, int j, int k) {
       const int along[] = {i, j, k};
-      const int a = along[(axis + 1) % 3], b = along[(axis + 2) % 3];
-      return a % 20 == 0 || b % 20 == 0;
+      return along[(axis + 1) % 3] % 20 == 0 || along[(axis + 2) % 3] % 20 == 0;
     });
     for (int other = 0; other < 3; ++other) {
-      const ModelView view = view_of(points, other);
-      CHECK((view.open_share() > 0.5) == (other == axis));
-      CHECK(view.encloses({1, 1, 1}, 0.1) == (other != axis));
+      CHECK((view_of(tube, other).open_share() > 0.5) == (other == axis));
+      CHECK(view_of(tube, other).encloses(kMiddle, 0.1) == (other != axis));
+    }
+    check_equal(view_of(tube, axis, 0.5).open_share(), 0);  // a view of few cells tells nothing
+    for (const auto& points : {std::vector<Vec3>{{1, 2, 3}}, {{0, 0, 0}, {5, 0, 0}}}) {
+      check_equal(view_of(points, axis).open_share(), 0);
+      CHECK_FALSE(view_of(points, axis).encloses(points[0], 0.1));
     }
   }
 }
@@ -64,17 +63,5 @@ TEST_CASE("what is open to a side is no hole") {
   // The model is a gantry: two legs and a roof, seen from the front.
   const auto gantry = cube([](int, int j, int k) { return j % 20 == 0 || k == 20; });
   check_equal(view_of(gantry, 0).open_share(), 0);
-  CHECK_FALSE(view_of(gantry, 2).encloses({1, 1, 1}, 0.1));
-}
-
-TEST_CASE("a view of few cells, of a line or of a point tells nothing") {
-  const auto tube = cube([](int, int j, int k) { return j % 20 == 0 || k % 20 == 0; });
-  check_equal(ModelView(tube, box_of(tube), 0, 0.5).open_share(), 0);
-  for (const std::vector<Vec3>& points :
-       {std::vector<Vec3>{{1, 2, 3}}, std::vector<Vec3>{{0, 0, 0}, {5, 0, 0}}}) {
-    for (int axis = 0; axis < 3; ++axis) {
-      check_equal(view_of(points, axis).open_share(), 0);
-      CHECK_FALSE(view_of(points, axis).encloses(points[0], 0.1));
-    }
-  }
+  CHECK_FALSE(view_of(gantry, 2).encloses(kMiddle, 0.1));
 }

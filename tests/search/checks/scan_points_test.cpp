@@ -1,5 +1,4 @@
 #include <cmath>
-#include <functional>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -61,32 +60,31 @@ TEST_CASE("the points in a turned box are all found, in its frame") {
   }
 }
 
-TEST_CASE("a visit stops when it is told to") {
+TEST_CASE("a visit stops when it is told to, and passes over no damaged cell") {
   const MemoryCloud cloud = ground_cloud();
+  const Box all{{0, 0, -1}, {40, 40, 1}};
   int seen = 0;
-  CHECK(ScanPoints(cloud).visit({{0, 0, -1}, {40, 40, 1}}, turned(0, 1, {0, 0, 0}),
+  CHECK(ScanPoints(cloud).visit(all, turned(0, 1, {0, 0, 0}),
                                 [&](const Vec3&) { return ++seen < 7; }));
   check_equal(seen, 7);
-}
-
-TEST_CASE("ground is as far below a body as it is, and damaged cells are not passed over") {
-  MemoryCloud cloud = ground_cloud();
-  const Box body{{-1, -1, 0.5}, {1, 1, 2}};
-  CHECK(height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, 7})).value() ==
-        Approx(7.5));
-  check_equal(height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, -1})).value(),
-              0);
-  CHECK_FALSE(
-      height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {20, 20, -4})).has_value());
-  CHECK_FALSE(
-      height_above_ground(ScanPoints(cloud), body, turned(0.4, 1, {50, 20, 7})).has_value());
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     MemoryCloud damaged = ground_cloud();
     damaged.damage(cell);
-    CHECK_THROWS_AS(ScanPoints(damaged).visit({{0, 0, -1}, {40, 40, 1}}, turned(0, 1, {0, 0, 0}),
-                                              [](const Vec3&) { return true; }),
-                    InputError);
+    CHECK_THROWS_AS(
+        ScanPoints(damaged).visit(all, turned(0, 1, {0, 0, 0}), [](const Vec3&) { return true; }),
+        InputError);
   }
+}
+
+TEST_CASE("ground is as far below a body as it is") {
+  const MemoryCloud cloud = ground_cloud();
+  const auto height_at = [&](const Vec3& at) {
+    return height_above_ground(ScanPoints(cloud), {{-1, -1, 0.5}, {1, 1, 2}}, turned(0.4, 1, at));
+  };
+  CHECK(height_at({20, 20, 7}).value() == Approx(7.5));
+  check_equal(height_at({20, 20, -1}).value(), 0);
+  CHECK_FALSE(height_at({20, 20, -4}).has_value());
+  CHECK_FALSE(height_at({50, 20, 7}).has_value());
 }
 
 // Which coordinates went through single precision.
@@ -94,31 +92,26 @@ TEST_CASE("ground is as far below a body as it is, and damaged cells are not pas
 TEST_CASE("numbers of single precision are told from others at coordinates of a map") {
   const auto single = [](double v) { return static_cast<double>(static_cast<float>(v)); };
   const auto rounded = [](double v, double step) { return std::round(v / step) * step; };
-  struct Row {
-    const char* what;
-    std::function<double(double)> change;
-    double expected;  ///< the largest step; 0: none is found
-  };
   // Eastings near 448 km, where steps are 1/32 m, and northings near 5,412 km, where they are 0.5
   // m.
-  for (const Row& row :
-       {Row{"double", [](double v) { return v; }, 0}, Row{"single", single, 0.5},
-        Row{"single, as text with millimetres", [&](double v) { return rounded(single(v), 1e-3); },
-            0.5},
-        Row{"centimetres", [&](double v) { return rounded(v, 0.01); }, 0},
-        Row{"millimetres", [&](double v) { return rounded(v, 0.001); }, 0},
-        Row{"half metres, which are exact", [&](double v) { return rounded(v, 0.5); }, 0},
-        Row{"near the origin",
-            [&](double v) { return single(v - (v > 1e6 ? 5'412'000 : 448'000)); }, 0}}) {
-    CAPTURE(row.what);
+  const auto step_of = [](const auto& change, double tolerance = 0.005) {
     std::vector<Vec3> places;
     for (int i = 0; i < 300; ++i) {
       const double x = 448'123.4567 + 0.3331 * i, y = 5'412'345.678 + 0.4117 * i;
-      places.push_back({row.change(x), row.change(y), 512.3});
+      places.push_back({change(x), change(y), 512.3});
     }
-    CHECK(single_precision_step(places, 0.005, 1).value_or(0) == row.expected);
-    CHECK(!single_precision_step(places, 1, 1));
-  }
+    return single_precision_step(places, tolerance, 1).value_or(0);
+  };
+  const auto as_text = [&](double step) { return [=](double v) { return rounded(v, step); }; };
+  check_equal(step_of(single), 0.5);
+  check_equal(step_of([&](double v) { return rounded(single(v), 1e-3); }), 0.5);
+  check_equal(step_of(single, 1), 0);
+  check_equal(step_of([](double v) { return v; }), 0);
+  check_equal(step_of(as_text(0.01)), 0);
+  check_equal(step_of(as_text(0.001)), 0);
+  check_equal(step_of(as_text(0.5)), 0);  // half metres are exact
+  // Near the origin
+  check_equal(step_of([&](double v) { return single(v - (v > 1e6 ? 5'412'000 : 448'000)); }), 0);
   // Text in feet with two decimals holds quarter feet, which single precision has, but no whole
   // centimetres.
   std::vector<Vec3> feet;

@@ -1,15 +1,13 @@
 #include "search/shard_cells.hpp"
 
 #include <algorithm>
-#include <memory>
 #include <numeric>
 #include <random>
 
 #include "clearway/error.hpp"
+#include "search/line_of_points.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/result_fixture.hpp"
-#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -18,28 +16,14 @@ namespace {
 
 constexpr std::uint64_t kEnough = std::uint64_t{1} << 30;
 
-/// A store of points along a line, and a model that passes half of them.
-struct HalfALine {
-  explicit HalfALine(std::uint32_t cell_points = 64) {
-    std::vector<Quantum> points;
-    for (std::int32_t i = 0; i < 8000; ++i) points.push_back({10 * i, 0, 0});
-    write_las(folder / "line.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
-    convert_quietly(conversion_of({folder / "line.las"}, folder / "line.h5", cell_points));
-    store = std::make_unique<StoreReader>(folder / "line.h5");
-    query.model = {{0, 0.05, 0}, {0.3, 0.05, 0}};
-    for (int i = 0; i < 400; ++i) {
-      query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.1 * i, 0, 0}});
-    }
-    query.radius = 0.1;
-  }
+/// A model that passes half of a line of points.
+struct HalfALine : LineOfPoints {
+  explicit HalfALine(std::uint32_t cell_points = 64)
+      : LineOfPoints(8000, {{0, 0.05, 0}, {0.3, 0.05, 0}}, 400, cell_points) {}
 
   ShardCells cells(std::uint32_t number, std::uint32_t count, int threads = 2) const {
     return {*store, query, {number, count}, threads, kEnough};
   }
-
-  ScratchFolder folder;
-  std::unique_ptr<StoreReader> store;
-  Query query;
 };
 
 }  // namespace
@@ -52,16 +36,17 @@ TEST_CASE("every cell is in exactly one shard, also with more shards than cells"
   for (const std::uint32_t count : {1U, 2U, 7U, 64U, cells, 300U}) {
     CAPTURE(count);
     std::vector<int> found(cells);
+    const std::uint64_t division = line.cells(1, count).part().division;
     for (std::uint32_t number = 1; number <= count; ++number) {
       const ShardCells shard = line.cells(number, count);
       for (std::uint32_t cell = 0; cell < cells; ++cell) found[cell] += shard.contains(cell);
-      CHECK(shard.part().division == line.cells(1, count).part().division);
+      CHECK(shard.part().division == division);
     }
     CHECK(found == std::vector<int>(cells, 1));
   }
 }
 
-TEST_CASE("shards do not depend on threads but on store and query and number") {
+TEST_CASE("shards depend on store, query and number, and on no threads") {
   HalfALine line;
   const std::uint64_t division = line.cells(1, 7).part().division;
   CHECK(line.cells(3, 7, 1).part().division == division);
@@ -69,6 +54,10 @@ TEST_CASE("shards do not depend on threads but on store and query and number") {
   CHECK(HalfALine(128).cells(1, 7).part().division != division);
   line.query.poses.resize(100);
   CHECK(line.cells(1, 7).part().division != division);
+  line.query.poses.clear();  // what divides nothing has all cells too
+  CHECK(line.cells(1, 1).contains(0));
+  CHECK(line.cells(1, 2).contains(0) != line.cells(2, 2).contains(0));
+  CHECK_THROWS_AS(ShardCells(*line.store, line.query, {1, 2}, 2, 1 << 20), ResourceError);
 }
 
 TEST_CASE("work is estimated where the model comes and nowhere else") {
@@ -82,33 +71,12 @@ TEST_CASE("work is estimated where the model comes and nowhere else") {
   }
 }
 
-TEST_CASE("shards of nothing have all cells too") {
-  HalfALine line;
-  line.query.poses.clear();
-  CHECK(line.cells(1, 1).contains(0));
-  CHECK(line.cells(1, 2).contains(0) != line.cells(2, 2).contains(0));
-}
-
-TEST_CASE("shards are refused where the memory is too little to divide") {
-  const HalfALine line;
-  CHECK_THROWS_AS(ShardCells(*line.store, line.query, {1, 2}, 2, 1 << 20), ResourceError);
-}
-
-namespace {
-
-/// Random work of cells: as in real scenes, a few cells have most of it and some have none.
-std::vector<std::uint64_t> random_work(std::mt19937_64& draw, std::size_t cells) {
-  std::vector<std::uint64_t> work(cells);
-  for (std::uint64_t& one : work) one = draw() % 5 == 0 ? 0 : (draw() >> 54) * (draw() >> 54);
-  return work;
-}
-
-}  // namespace
-
 TEST_CASE("cells are divided so that no part has more than the mean and the largest cell") {
   std::mt19937_64 draw(17);
   for (const std::size_t cells : {0, 1, 2, 15, 100, 999}) {
-    const std::vector<std::uint64_t> work = random_work(draw, cells);
+    // As in real scenes, a few cells have most of the work and some have none.
+    std::vector<std::uint64_t> work(cells);
+    for (std::uint64_t& one : work) one = draw() % 5 == 0 ? 0 : (draw() >> 54) * (draw() >> 54);
     for (const std::uint32_t shards : {1, 2, 7, 16, 64, 1000}) {
       CAPTURE(cells, shards);
       const std::vector<std::uint32_t> parts = divide_cells(work, shards);
@@ -126,12 +94,9 @@ TEST_CASE("cells are divided so that no part has more than the mean and the larg
   }
 }
 
-TEST_CASE("cells without work are spread over all parts") {
-  const std::vector<std::uint32_t> parts = divide_cells(std::vector<std::uint64_t>(100), 7);
-  for (std::uint32_t part = 0; part < 7; ++part) CHECK(std::ranges::count(parts, part) >= 14);
-}
-
-TEST_CASE("of equal cells each part gets as many as every other") {
-  const std::vector<std::uint32_t> parts = divide_cells(std::vector<std::uint64_t>(64, 5), 16);
-  for (std::uint32_t part = 0; part < 16; ++part) check_equal(std::ranges::count(parts, part), 4);
+TEST_CASE("of equal cells each part gets as many as every other, be they without work") {
+  const std::vector<std::uint32_t> idle = divide_cells(std::vector<std::uint64_t>(100), 7);
+  for (std::uint32_t part = 0; part < 7; ++part) CHECK(std::ranges::count(idle, part) >= 14);
+  const std::vector<std::uint32_t> equal = divide_cells(std::vector<std::uint64_t>(64, 5), 16);
+  for (std::uint32_t part = 0; part < 16; ++part) check_equal(std::ranges::count(equal, part), 4);
 }
