@@ -44,7 +44,7 @@ TEST_CASE("random questions have the true answer, in a session, in parts and in 
   for (const bool plain : {false, true}) {
     const AskedScan scan(41, plain);
     const Session session(scan.store, {.device = Device::kCpu, .threads = 2});
-    const auto other_cells = scan.converted("other.h5", {.cell_points = 700});
+    const auto other_cells = scan.converted("other.h5", {.cell_points = plain ? 700U : 4096U});
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
       CAPTURE(plain, seed);
       Random random(seed);
