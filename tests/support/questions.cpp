@@ -404,7 +404,7 @@ Question AskedScan::any_question(Random& random) const {
     const Vec3 corner = places[below(random, places.size())], size{1.5, 1, 0.6};
     query.ignore_boxes = {one_in(2) ? Box{corner, corner + size} : Box{corner - size, corner}};
   }
-  if (one_in(5)) query.error_scan = one_in(3) ? 0.02 : 0.004;
+  if (one_in(3)) query.error_scan = one_in(2) ? 0.02 : 0.004;
   if (one_in(8)) query.error_pose = 0.003;
   const bool plain = query.bodies.empty() && !query.model.is_surface();
   if (plain && one_in(2)) asked.engine = one_in(2) ? Engine::kKdtree : Engine::kGrid;
