@@ -43,9 +43,9 @@ class Place:
     def json(self, words, code=0):
         return json.loads(self.ask(words + " --json", code).stdout)
 
-    def start(self, words):
+    def start(self, words, to=subprocess.PIPE, **options):
         return subprocess.Popen([PROGRAM, *shlex.split(words)], cwd=self.folder, text=True,
-                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                                stdout=to, stderr=subprocess.STDOUT, **options)
 
     def put(self, name, content):
         """Writes text, or what is no text as JSON."""
