@@ -8,8 +8,6 @@ flip_bytes.py PROGRAM [--tries N]
 
 import argparse
 import collections
-import resource
-import signal
 import sys
 import tempfile
 from pathlib import Path
@@ -18,16 +16,6 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from place import Place  # noqa: E402
 
 JOURNAL_BYTES = 1500
-
-
-def journal_of(place, run):
-    """What a run leaves that may not write more than so many bytes to a file."""
-    def limit():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-        resource.setrlimit(resource.RLIMIT_FSIZE, (JOURNAL_BYTES, JOURNAL_BYTES))
-    process = place.start(f"{run} --env site.h5 --journal-interval 0", preexec_fn=limit)
-    process.communicate()
-    return (place / "out.journal").read_bytes()
 
 
 def flip(place, name, words, output, refusals, tries):
@@ -71,8 +59,9 @@ def main():
         for engine, options in (("sweep", "--first-pose"), ("grid", ""), ("kdtree", "")):
             run = (f"run --model model.ply --trajectory trajectory.txt --radius 0.1 --device cpu --threads 1 "
                    f"--engine {engine} {options} -o out")
-            journal = journal_of(place, run)
-            (place / "out.journal").unlink()
+            # What a run leaves that may not write more than so many bytes to a file.
+            place.ask(f"{run} --env site.h5 --journal-interval 0", 4, under=["prlimit", f"--fsize={JOURNAL_BYTES}"])
+            [journal] = place.bytes("out.journal")
             refused = flip(place, "site.h5", f"{run} --env site.h5", "out", [3], tries)
             assert refused > tries / 10, f"{refused} refused"
             assert len(journal) > JOURNAL_BYTES / 2, f"a journal of {len(journal)} bytes"
