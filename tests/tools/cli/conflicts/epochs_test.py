@@ -67,6 +67,7 @@ POLES = [pole(20), pole(45)]
 SMALL_POLE = Kerb(45, 45.05, 0.4, 1.0)
 WITHHELD = Kerb(10, 10.05, 0.4, 1.0, withheld=True)
 LONG = Kerb(20, 24, 0.35, 0.4)
+CABLE = Kerb(30, 30.1, 0.5, 0.5)
 
 
 class Epochs(Scratch):
@@ -135,6 +136,12 @@ class Epochs(Scratch):
                 ("hole in the ground", a, replace(one, hole=(38, 52)), 6, "not_searched 1, same 1",
                  "its run warned of nothing-below", "nothing-below", "nothing-below"),
                 ("moved pole", a, Epoch([pole(20), pole(47)]), 1, "gone 1, new 1, same 1", "1 new conflict"),
+                ("new cable of a few points", a, Epoch([*POLES, CABLE]), 1, "new_small 1, same 2",
+                 "new groups that are too small to be listed: 1"),
+                ("cable of a few points that both have", Epoch([*POLES, CABLE]), Epoch([*POLES, CABLE]), 0, "same 2",
+                 "no new conflicts"),
+                ("cable of a few points at another place", Epoch([*POLES, CABLE]),
+                 Epoch([*POLES, Kerb(35, 35.1, 0.5, 0.5)]), 1, "new_small 1, same 2", "too small to be listed: 1"),
                 ("new pole in the box of a kerb that is gone", Epoch([LONG, Kerb(20, 20.05, 0.4, 1.4)]),
                  Epoch([Kerb(23, 23.1, 0.9, 1.4)]), 1, "gone 1, new 1", "1 new conflict"),
                 ("new pole that hangs together with an old kerb", Epoch([LONG]),
