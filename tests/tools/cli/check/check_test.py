@@ -155,12 +155,10 @@ class Check(Scratch):
         self.check(words, 0, DONE)
         self.vehicle(bodies[:2])
         self.check(words, 2, "answers another question")
-
-    def test_a_body_with_a_trajectory_of_its_own_keeps_the_path(self):
-        self.bend("bend.txt", [(i, 0) for i in range(12)])
+        # One with poses of its own, which belong to those of the path, leaves no room between them.
         self.vehicle([TWO_BODIES[0], {"name": "own", "model": "model.ply", "trajectory": "bend.txt"}])
-        self.check("scans --vehicle train.json --trajectory bend.txt --radius 0.1 -o own", 0,
-                   "no poses are put between", "the poses of the body own belong to those of the path")
+        self.check(words.replace("-o train", "-o own"), 0, "no poses are put between",
+                   "the poses of the body own belong to those of the path")
 
     def test_a_path_with_a_jump_stays_as_it_is(self):
         self.check("scans --model model.ply --trajectory jump.txt --radius 0.1 -o site", lacks=["resample"])
@@ -226,15 +224,18 @@ class Check(Scratch):
         self.vehicle(TWO_BODIES, "wagon.json")
         self.vehicle([TWO_BODIES[0], {"name": "rear", "model": "model.ply",
                                       "towed": {"by": "front", "at": -2.4, "pivots": [2.4, -1]}}], "towed.json")
-        self.check(SITE)
+        scans = self.check(f"{SITE} --origins origins.csv")
+        self.assertIn("--origins origins.csv", printed(scans)[0])
         for words in ("--vehicle wagon.json", "--vehicle towed.json", "--model model.ply --between-poses",
                       "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
                       "--model model.ply --forward=-x",
+                      "--model model.ply --seen",
                       "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
             with self.subTest(words):
                 done = self.check(f"site/site.h5 --trajectory quarter.txt --radius 0.1 {words} -o other --force")
                 self.assertEqual("--gap" in printed(done)[0], "--error" in words)
                 self.assertEqual("--clearance" in printed(done)[0], "--between-poses" not in words)
+                self.assertEqual("--seen" in printed(done)[0], "--seen" in words)
                 made = self.made("other", FILES[1:])
                 self.paste(printed(done), self.here)
                 self.assertEqual(self.made("other", FILES[1:]), made)
@@ -334,11 +335,6 @@ class Check(Scratch):
             self.assertEqual(done.stderr.count("the body has no pose there"), 4, done.stderr)
         self.vehicle([{"name": "a", "model": "box:2,1"}], "vehicles/all.json")
         self.check(f"{site} all --vehicle vehicles/all.json", 2, "expected a box as box:LENGTH,WIDTH,HEIGHT")
-
-    def test_seen_space(self):
-        seen = self.check(f"scans {QUESTION} --origins origins.csv --seen -o seen")
-        self.assertIn("--origins origins.csv", printed(seen)[0])
-        self.assertIn("--seen", printed(seen)[1])
 
     # The same command again. check_pairs.py draws other options and inputs in one folder.
 
@@ -474,12 +470,6 @@ class Check(Scratch):
         (here / "scans/broken.las").write_bytes(b"LASF" + b"\0" * 500)
         self.refused(f"scans {QUESTION} -o out", 3, "broken.las", "--skip-unreadable leaves out")
         self.check(f"scans {QUESTION} -o out --skip-unreadable")
-
-    def test_a_model_in_millimetres_needs_its_unit(self):
-        self.here.put_box("mm.off", (-2000, -900, 300), (2000, 900, 1400))
-        words = "scans --model mm.off --trajectory trajectory.txt --radius 0.1"
-        wrong = self.check(f"{words} -o wrong", 0, "unit")
-        self.assertNotEqual(last_line(self.check(f"{words} --model-unit mm -o right")), last_line(wrong))
 
     def test_a_limit_of_processes_is_told(self):
         """Pools of threads that do not fit beside each other, for a user who has no other process."""

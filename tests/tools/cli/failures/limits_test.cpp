@@ -25,7 +25,16 @@ struct Place : Workplace {
   }
 };
 
-const std::string kPose = "1 0 0 0 0 1 0 0 0 0 1 0\n";
+/// Writes a floor of points on the ground in rows of `side`, `step` millimetres apart.
+void write_floor(const std::filesystem::path& path, std::size_t points, std::size_t side,
+                 std::int32_t step) {
+  std::vector<Quantum> floor(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    floor[i] = {static_cast<std::int32_t>(i % side) * step,
+                static_cast<std::int32_t>(i / side) * step, 0};
+  }
+  write_las(path, floor, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+}
 
 }  // namespace
 
@@ -33,12 +42,7 @@ TEST_CASE("more than 2^16 cells, and more than 10^6 poses") {
   constexpr std::size_t kPoints = 64 * 65'600;
   constexpr std::size_t kPoses = 1'100'000;
   const Place place;
-  std::vector<Quantum> points(kPoints);
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    points[i] = {static_cast<std::int32_t>(i % 2000) * 1000,
-                 static_cast<std::int32_t>(i / 2000) * 1000, 0};
-  }
-  write_las(place.folder / "a.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+  write_floor(place.folder / "a.las", kPoints, 2000, 1000);
   place.succeed("convert a.las --cell-points 64 -o a.h5");
   // The path goes along the first row and back, millimetre by millimetre; its last pose is at the
   // last point.
@@ -72,16 +76,15 @@ void write_line(const std::filesystem::path& path, std::uint32_t points,
                     .blocks = {},
                     .chunks = {}};
   packed.blocks.push_back(encode_block_box(packed.cell.box, packed.cell.box));
-  std::vector<std::int32_t> along(64), zero(64);
-  std::vector<std::uint64_t> sources(64);
+  std::vector<std::int32_t> along, zero(64);
+  std::vector<std::uint64_t> sources;
   for (std::uint32_t i = 0; i < 64; ++i) {
-    const std::uint32_t point = std::min(i, points - 1);
-    along[i] = static_cast<std::int32_t>(point);
-    sources[i] = first_source + point;
+    along.push_back(static_cast<std::int32_t>(std::min(i, points - 1)));
+    sources.push_back(first_source + along.back());
   }
-  append_packed_chunk<std::int32_t>(along, packed.chunks[0]);
-  append_packed_chunk<std::int32_t>(zero, packed.chunks[1]);
-  append_packed_chunk<std::int32_t>(zero, packed.chunks[2]);
+  for (int k = 0; k < 3; ++k) {
+    append_packed_chunk<std::int32_t>(k == 0 ? along : zero, packed.chunks[k]);
+  }
   append_packed_chunk<std::uint64_t>(sources, packed.chunks[3]);
   hash_chunks(packed);
   StoreWriter writer(path, metadata, 1);
@@ -93,7 +96,7 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
   constexpr std::uint64_t kFirst = (std::uint64_t{5} << 32) + 7;
   const Place place;
   write_line(place.folder / "line.h5", 50, kFirst);
-  place.put("path.txt", "1 0 0 20 0 1 0 0 0 0 1 0\n1 0 0 40 0 1 0 0 0 0 1 0\n");
+  place.put("path.txt", path_along_x(2, 20, 20));
   check_outcome(place.run("verify line.h5"), 0);
   CHECK(place.answer("info --json line.h5")["non_finite_points"] == kFirst);
   const std::string options =
@@ -103,9 +106,8 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
   const ResultReader result(place.folder / "out.h5");
   CHECK(result.header().environment_points == kFirst + 50);
   const Collisions rows = read_rows(result);
-  std::vector<std::uint64_t> expected;
-  for (const std::uint64_t at : {19, 20, 21, 39, 40, 41}) expected.push_back(kFirst + at);
-  CHECK(rows.source == expected);
+  CHECK(rows.source ==
+        std::vector{kFirst + 19, kFirst + 20, kFirst + 21, kFirst + 39, kFirst + 40, kFirst + 41});
   check_outcome(place.run("verify out.h5"), 0);
   place.succeed("export out.h5 -o out.csv");
   check_says(place.bytes("out.csv"), "\n" + std::to_string(kFirst + 41) + ",41,0,0");
@@ -117,19 +119,12 @@ TEST_CASE("sources above 2^32 of a store come through a run, an export and a com
 }
 
 TEST_CASE("a model of 10^7 points is searched, or refused where memory does not do") {
-  constexpr std::int32_t kSide = 3163;  // a floor of points, 1 mm apart
   const Place place;
-  const Quantisation millimetres{{0.001, 0.001, 0.001}, {0, 0, 0}};
-  std::vector<Quantum> floor;
-  floor.reserve(std::size_t{kSide} * kSide);
-  for (std::int32_t y = 0; y < kSide; ++y) {
-    for (std::int32_t x = 0; x < kSide; ++x) floor.push_back({x, y, 0});
-  }
-  write_las(place.folder / "model.las", floor, millimetres);
+  write_floor(place.folder / "model.las", 3163 * 3163, 3163, 1);
   std::vector<Quantum> above;
   for (std::int32_t i = 0; i < 20'000; ++i) above.push_back({i % 3001, i * 7 % 3001, i % 23});
-  write_las(place.folder / "above.las", above, millimetres);
-  place.put("pose.txt", kPose);
+  write_las(place.folder / "above.las", above, {{0.001, 0.001, 0.001}, {0, 0, 0}});
+  place.put("pose.txt", pose_at(0));
   place.succeed("convert above.las -o above.h5");
   const std::string search =
       "run --env above.h5 --model model.las --trajectory pose.txt --device cpu --radius 0.0105 -o ";
