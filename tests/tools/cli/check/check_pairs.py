@@ -92,6 +92,7 @@ CHANGES = {
     "las": lambda rng, place: write_las(place / "scans/b.las", lane()[800:]),
     "store": lambda rng, place: convert(place, rng.choice(
         ["--unit us-ft", "--unit ft", "--columns 4,5,6", "--scale 0.5", ""])),
+    "unit": lambda rng, place: convert(place, "--unit us-ft"),
     "path": lambda rng, place: place.put_path("path.txt", poses(25, 0.02)),
     "poses": lambda rng, place: put_pose_folder(place, 30, 0.1),
     "pose": lambda rng, place: put_pose_folder(place, 31),
@@ -109,7 +110,7 @@ LIKELY = [(f"{TEXT} --columns 4,5,6", "", TEXT),
           (f"{TEXT} --origins origins.csv --seen", "origins", f"{TEXT} --origins origins.csv --seen"),
           (f"scan.xyz --trajectory poses {CAR}", "poses", f"scan.xyz --trajectory poses {CAR}"),
           (f"scans --trajectory wave.txt {CAR} --near", "", f"scans --trajectory path.txt {CAR}"),
-          (f"site.h5 --trajectory path.txt {CAR}", "store", f"site.h5 --trajectory path.txt {CAR}")]
+          (f"site.h5 --trajectory path.txt {CAR}", "unit", f"site.h5 --trajectory path.txt {CAR}")]
 
 
 def draw(rng, choices, chance=1.0):

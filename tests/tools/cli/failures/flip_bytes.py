@@ -51,7 +51,7 @@ def flip(place, name, words, output, refusals, tries):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("--tries", type=int, default=100)
+    parser.add_argument("--tries", type=int, default=60)
     tries = parser.parse_args().tries
     with tempfile.TemporaryDirectory() as folder:
         place = Place(folder)
@@ -62,6 +62,7 @@ def main():
             # What a run leaves that may not write more than so many bytes to a file.
             place.ask(f"{run} --env site.h5 --journal-interval 0", 4, under=["prlimit", f"--fsize={JOURNAL_BYTES}"])
             [journal] = place.bytes("out.journal")
+            (place / "out.journal").unlink()
             refused = flip(place, "site.h5", f"{run} --env site.h5", "out", [3], tries)
             assert refused > tries / 10, f"{refused} refused"
             assert len(journal) > JOURNAL_BYTES / 2, f"a journal of {len(journal)} bytes"

@@ -263,6 +263,16 @@ class Others(Stopped):
             self.place.ask(command)
             self.assertEqual(self.files(), ["out.h5"])
 
+    def test_a_store_in_another_unit_makes_the_result_anew(self):
+        self.place.put("cloud.xyz", "".join(f"{i * 0.01} 0 {i % 9}\n" for i in range(300)))
+        results, run = [], f"run {INPUTS} --radius 0.1 --first-pose -o {RESULT} --resume".replace("site", "unit")
+        for unit in ("m", "ift", "m"):
+            self.place.ask(f"convert cloud.xyz --unit {unit} -o unit.h5 --force")
+            self.place.ask(run)
+            results += self.place.bytes(RESULT)
+            self.place.ask(run, 0, FINISHED)
+        self.assertEqual([results[0] == results[1], results[0] == results[2]], [False, True])
+
     def test_a_scene_that_is_asked_to_stop_leaves_nothing_behind(self):
         process = self.place.start("scene hall --points 3000000 -o out")
         while not self.files():
