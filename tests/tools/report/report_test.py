@@ -182,7 +182,8 @@ class Reports(Pages):
         order = page.run("sortedConflicts(tableColumns()).map((c) => c.id)")
         for at, disabled in ((0, [True, False, False]), (1, [False, False, False]), (-1, [False, True, False])):
             page.run(f"selectConflict(conflictList().find((c) => c.id === {order[at]}))")
-            self.gives(page, {"[...document.querySelectorAll('#conflict-details button')].map((b) => b.disabled)": disabled})
+            self.gives(page, {"[...document.querySelectorAll('#conflict-details button')].map((b) => b.disabled)":
+                              disabled})
         page.run("sortBy('Points')")
         sorts = page.run("[...document.querySelectorAll('#conflicts-table th')].map((h) => h.getAttribute('aria-sort'))")
         self.assertEqual([sorts.count("descending"), sorts.count("none")], [1, len(sorts) - 1])
@@ -207,7 +208,8 @@ class Reports(Pages):
         self.gives(page, {"document.activeElement.dataset.id": last})
         page.key("Home")
         page.key("ArrowDown")
-        self.gives(page, {f"[...{ROWS}].filter((r) => r.tabIndex === 0).map((r) => r === document.activeElement)": [True],
+        self.gives(page,
+                   {f"[...{ROWS}].filter((r) => r.tabIndex === 0).map((r) => r === document.activeElement)": [True],
                           "getComputedStyle(document.activeElement).outlineStyle": "solid"})
         chosen = page.run("document.activeElement.dataset.id")
         page.key("Enter")
@@ -216,8 +218,10 @@ class Reports(Pages):
         before = page.run("page.pose")
         page.key("ArrowRight")
         self.gives(page, {"page.pose": before + 1})
-        camera = "JSON.stringify([page.pose, ...view.target, view.distance, view.yaw, view.pitch].map((v) => +v.toFixed(6)))"
-        show = "[...byId('conflict-details').querySelectorAll('button')].find((b) => b.textContent === 'Show in 3-D').click()"
+        camera = """JSON.stringify([page.pose, ...view.target, view.distance, view.yaw, view.pitch]
+            .map((v) => +v.toFixed(6)))"""
+        show = """[...byId('conflict-details').querySelectorAll('button')]
+            .find((b) => b.textContent === 'Show in 3-D').click()"""
         seen = []
         for action in (show, "selectPose(0), flyToOverview()", show):
             page.run(action)
@@ -377,12 +381,17 @@ class Reports(Pages):
 
     def changed(self, path, value):
         """The first sentence of the verdict if a fact were another one."""
-        return f"(() => {{ const old = {path}; {path} = {value}; const said = verdictSentences()[0]; {path} = old; return said; }})()"
+        return f"""(() => {{ const old = {path};
+            {path} = {value};
+            const said = verdictSentences()[0];
+            {path} = old;
+            return said; }})()"""
 
     def test_a_floor(self):
         with_errors = "0.3 m of the vehicle (0.1621 m with the errors)"
         given = []
-        for name, more, words in (("floor", "", "0.3 m of the vehicle"), ("floor_errors", "--error-pose 0.01", with_errors)):
+        for name, more, words in (("floor", "", "0.3 m of the vehicle"),
+                                  ("floor_errors", "--error-pose 0.01", with_errors)):
             self.hall.search(name, f"--first-pose --clearance 0.3 --floor 0.3 {more}")
             given.append((self.hall.report(name), words))
         page = self.shown(self.hall, "floor_errors", given[1][0])

@@ -39,7 +39,8 @@ class SectionPage(Pages):
 
     def page_of(self, name, options, code=0, *said):
         """The facts of the page name.html of the section."""
-        done = self.street.ask(f"report section.h5 -o {name}.html --force --json --date '{DATE}' {options}", code, *said)
+        done = self.street.ask(f"report section.h5 -o {name}.html --force --json --date '{DATE}' {options}", code,
+                               *said)
         return json.loads(done.stdout)["section"] if code == 0 else None
 
     def shown_section(self, name, **texts):
@@ -74,7 +75,8 @@ class SectionPage(Pages):
         self.assertTrue(post["obstacles"] and post["obstacles"] != wire["obstacles"])
         self.assertTrue(post["intrusions"][0]["obstacle"].startswith("conflict "))
         # The deepest is A.
-        self.assertEqual([[p[key] for key in ("label", "side", "chainage_from", "chainage_to")] for p in check["places"]],
+        keys = ("label", "side", "chainage_from", "chainage_to")
+        self.assertEqual([[place[key] for key in keys] for place in check["places"]],
                          [["A", "left", 15, 20], ["B", "above", 25, 30]])
         self.assertIn("Clear on the left to y = 1.40 m", check["places"][0]["remedy"])
         self.page_of("again", f"{TALL} {SITE} --conflicts conflicts.csv")
@@ -91,7 +93,8 @@ class SectionPage(Pages):
 
     def test_the_page_shows_cells_widths_and_stretches(self):
         head, *rows = (self.street / "conflicts.csv").read_text().splitlines()
-        self.street.put("named.csv", f"{head},name\n" + "".join(f'{row},"tree {i}, <old>"\n' for i, row in enumerate(rows)))
+        self.street.put("named.csv", f"{head},name\n" + "".join(
+            f'{row},"tree {i}, <old>"\n' for i, row in enumerate(rows)))
         check = self.page_of("tall", f"{TALL} {SITE} --conflicts named.csv")["check"]
         names = sorted({name for stop in check["stops"] for name in stop["obstacles"]})
         self.assertTrue(names and all(re.fullmatch(r"tree \d+, <old>", name) for name in names))
@@ -152,7 +155,8 @@ class SectionPage(Pages):
         root = xml.parse(self.street / "picture.svg").getroot()
         words = [text.text for text in root.iter(f"{SVG}text")]
         self.assertEqual(root.tag, f"{SVG}svg")
-        self.assertLessEqual({"y (m), looking forward", "height z (m)", "stops the load", "its margin, 0.1 m"}, set(words))
+        self.assertLessEqual({"y (m), looking forward", "height z (m)", "stops the load", "its margin, 0.1 m"},
+                             set(words))
         self.assertTrue(any(word.startswith("conflict ") for word in words))
         outline = next(e for e in root.iter(f"{SVG}path") if e.get("class") == "section_outline")
         scale, left = float(root.get("data-scale")), float(root.get("data-left"))
@@ -197,7 +201,8 @@ class SectionPage(Pages):
     def test_check_names_the_witness(self):
         self.street.ask("section check section.h5 --outline tall.csv --json", 1, lacks=["witness"])
         found = self.street.json(f"section check section.h5 --outline tall.csv {SITE}", 1)
-        self.assertEqual([found["witness"]["xyz"][0], [stop["witness"]["xyz"][0] for stop in found["stops"]]], [20, [20, 30]])
+        self.assertEqual([found["witness"]["xyz"][0], [stop["witness"]["xyz"][0] for stop in found["stops"]]],
+                         [20, [20, 30]])
 
 
 if __name__ == "__main__":

@@ -28,7 +28,8 @@ class VehiclePage(Pages):
     def test_facts_name_the_bodies_and_are_those_of_conflicts(self):
         facts = self.facts
         bodies, poses = facts["inputs"]["model"]["bodies"], facts["inputs"]["trajectory"]["poses"]
-        self.assertEqual([[body["name"], body["triangles"]] for body in bodies], list(map(list, zip(BODIES, [0, 4, 4]))))
+        self.assertEqual([[body["name"], body["triangles"]] for body in bodies],
+                         list(map(list, zip(BODIES, [0, 4, 4]))))
         self.assertEqual([bodies[2]["poses"], bodies[0]["poses"] < bodies[1]["poses"]], [poses, True])
         self.assertEqual(facts["page"]["model_points"], sum(body["shown_points"] for body in bodies))
         self.assertIn(facts["least_distance"]["body"], BODIES)
@@ -46,7 +47,8 @@ class VehiclePage(Pages):
         self.hall.put("other.json", {"bodies": [MIDDLE]})
         inputs = "--env site.h5 --trajectory trajectory.txt"
         self.hall.ask(f"run {inputs} --model model.ply --radius 0.1 -o plain.h5")
-        for result, vehicle, words in (("out", "--model model.ply", "several bodies"), ("out", "--vehicle other.json", "vehicle"),
+        for result, vehicle, words in (("out", "--model model.ply", "several bodies"),
+                                       ("out", "--vehicle other.json", "vehicle"),
                                        ("plain", "--vehicle wagon.json", "one model")):
             self.hall.ask(f"report {result}.h5 {inputs} {vehicle} -o bad.html", 3, words)
 
@@ -96,7 +98,8 @@ class VehiclePage(Pages):
         facts = one.report("one")
         begin, end = facts["unsearched"]
         track = facts["inputs"]["trajectory"]
-        self.assertEqual([begin["has_answer"], end["has_answer"], begin["first_pose"], end["last_pose"], begin["bodies"]],
+        self.assertEqual([begin["has_answer"], end["has_answer"], begin["first_pose"], end["last_pose"],
+                          begin["bodies"]],
                          [False, False, 0, track["poses"] - 1, ["wagon"]])
         self.assertAlmostEqual(begin["chainage_to"], 1.1, delta=0.15)
         self.assertAlmostEqual(track["searched_length"], end["chainage_from"] - begin["chainage_to"], 9)

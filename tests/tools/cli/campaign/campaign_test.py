@@ -125,7 +125,8 @@ class Plans(Campaigns):
         for number, (routes, *said) in enumerate((
                 ({"all": "routes/*.txt"},), ({"first": "routes/r00.txt"},),
                 ({"first": "routes/r00.t*", "rest": "routes/r0[1-9].txt"},),
-                ({"first": "routes/r00.t*"}, "routes.first: the pattern matches 1 file", "1 file beside them", "r01.txt"))):
+                ({"first": "routes/r00.t*"}, "routes.first: the pattern matches 1 file", "1 file beside them",
+                 "r01.txt"))):
             self.plan(f"missed{number}", {"routes": routes}, 0, *said, lacks=() if said else ["leaves out"])
         shutil.copy(self.place / "routes/r00.txt", self.place / "routes/r09.csv")
         self.addCleanup((self.place / "routes/r09.csv").unlink)

@@ -161,7 +161,8 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         place = Place(folder)
         make_scene(place, VEHICLES, ROUTES)
-        references = [(name, undisturbed(place, name, changes)) for name, changes in (("divided", DIVIDED), ("whole", {}))]
+        references = [(name, undisturbed(place, name, changes))
+                      for name, changes in (("divided", DIVIDED), ("whole", {}))]
         runs = [{folder: files for folder, files in found.items() if folder.parent.name != "shards"}
                 for _, found in references]
         expect(runs[0] == runs[1] and len(runs[0]) == VEHICLES * ROUTES, "merged results differ")

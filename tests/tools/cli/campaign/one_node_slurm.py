@@ -101,7 +101,8 @@ class OneNodeSlurm:
         (munge / "key").chmod(0o400)
         host = socket.gethostname().split(".")[0]
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
-            host=host, user=pwd.getpwuid(os.getuid()).pw_name, folder=self.folder, ports=free_ports(2), max_array=self.max_array))
+            host=host, user=pwd.getpwuid(os.getuid()).pw_name, folder=self.folder, ports=free_ports(2),
+            max_array=self.max_array))
         self.run("munged", "--force", "--num-threads=2", *(f"--{option}={munge}/{option.split('-')[0]}" for option in (
             "key-file", "socket", "pid-file", "log-file", "seed-file")))
         self.run("slurmctld", "-c", "-f", self.folder / "slurm.conf")

@@ -55,7 +55,8 @@ class Outcomes(Campaigns):
         for text in (self.status_text(name), done.stderr):
             self.assertEqual(told(text), (runs, expected))
         for outcome in OUTCOMES:
-            legend = re.search(rf'<li class="{outcome}"><span class="sign" aria-hidden="true">.</span> <b>(\d+)</b>', page)
+            legend = re.search(rf'<li class="{outcome}"><span class="sign" aria-hidden="true">.</span> <b>(\d+)</b>',
+                               page)
             self.assertEqual([facts[outcome], sum(run["outcome"] == outcome for run in facts["runs"]),
                               page.count(f'<td class="{outcome}"'), int(legend[1]) if legend else 0],
                              [expected[outcome]] * 4, outcome)

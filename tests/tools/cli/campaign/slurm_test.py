@@ -126,7 +126,8 @@ class Slurm(Campaigns):
         page = self.path / "index.html"
         self.assertIn("failed (3)", page.read_text())
         self.assertEqual((self.path / "slurm/report.log").read_text().count("index.html"), 1)
-        self.assertGreaterEqual(page.stat().st_mtime, max(file.stat().st_mtime for file in self.path.glob("runs/**/state.json")))
+        self.assertGreaterEqual(page.stat().st_mtime,
+                                max(file.stat().st_mtime for file in self.path.glob("runs/**/state.json")))
 
         # Merges come once, after all tasks that are none.
         last = max(state.stat().st_mtime for task, state in enumerate(states) if task not in self.merges)

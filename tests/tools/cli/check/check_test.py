@@ -496,7 +496,8 @@ class Check(Scratch):
         opened = self.here / "opened"
         for name in ("xdg-open", "open"):
             script = self.here / name / name
-            self.here.put(f"{name}/{name}", f"#!/bin/sh\nprintf '%s' \"$1\" > {opened}.new; /bin/mv {opened}.new {opened}\n")
+            self.here.put(f"{name}/{name}", f"#!/bin/sh\nprintf '%s' \"$1\" > {opened}.new\n"
+                          f"/bin/mv {opened}.new {opened}\n")
             script.chmod(0o755)
             self.check(f"{SITE} --open", env={**os.environ, "PATH": str(script.parent)})
             last = time.monotonic() + 10

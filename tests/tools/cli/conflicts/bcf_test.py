@@ -133,7 +133,8 @@ class Bcf(Scratch):
         self.assertGreater(len(self.topics_of(f"{conflicts} --min-points 1000000", "none.bcfzip")), 0)
 
     def test_pictures_show_the_bodies_where_they_are_given(self):
-        for words, shown, filled in (("wagon.h5", [False, False], 0), ("wagon.h5 --vehicle wagon.json", [True, True], 0),
+        for words, shown, filled in (("wagon.h5", [False, False], 0),
+                                     ("wagon.h5 --vehicle wagon.json", [True, True], 0),
                                      ("mesh.h5 --model box.off", [True], 1)):
             pixels = [count for _, count in self.topics_of(f"{words} --trajectory path.txt --min-points 3")]
             self.assertEqual([[count > 0 for count in pixels], sum(count > 5000 for count in pixels)], [shown, filled])

@@ -181,7 +181,8 @@ class Epochs(Scratch):
                      "b has not searched 2 places", "floor, model")):
             self.check_pair(*row)
         # In one scan a vehicle is searched wherever its floors are not higher.
-        for a, b, code, lists in ((high, low, 1, "new 1, new_parts 1, same 1"), (low, high, 6, "not_searched 2, same 1")):
+        for a, b, code, lists in ((high, low, 1, "new 1, new_parts 1, same 1"),
+                                  (low, high, 6, "not_searched 2, same 1")):
             self.assertEqual(self.lists_of(self.place.json(self.comparison(a, replace(b, noise=0)), code)), lists)
         floor = self.place.json("info b.h5")["floor"]
         self.assertEqual([floor["height"], floor["bodies"]], [None, {"cab": 0.85, "box": 0.9}])

@@ -70,7 +70,8 @@ def main():
             # 2: it is no journal any more
             flip(place, "out.journal", f"{run} --env site.h5 --resume", "out", [2, 3], tries)
             (place / "out.journal").unlink()
-        place.ask("run --env site.h5 --model model.ply --trajectory trajectory.txt --radius 0.1 --first-pose -o result.h5")
+        place.ask("run --env site.h5 --model model.ply --trajectory trajectory.txt --radius 0.1 --first-pose "
+                  "-o result.h5")
         flip(place, "result.h5", "export result.h5 -o out.csv", "out.csv", [3], tries)
 
 

@@ -148,8 +148,9 @@ def main():
         (place / "out").mkdir()
         place.make_hall(arguments.points, 10000, arguments.poses, "--cell-points 1000")
         for i in range(3):
-            place.put(f"{i}.xyz", "".join("%.3f %.3f %.3f\n" % (draw.uniform(-50, 50), draw.uniform(-20, 20), draw.uniform(0, 8))
-                                          for _ in range(arguments.points // 12)))
+            place.put(f"{i}.xyz", "".join(
+                f"{draw.uniform(-50, 50):.3f} {draw.uniform(-20, 20):.3f} {draw.uniform(0, 8):.3f}\n"
+                for _ in range(arguments.points // 12)))
         run = f"run --env site.h5 --model model.ply --trajectory trajectory.txt --device {arguments.device}"
         cases = [Case(place, name, f"{run} {words}") for name, words in RUNS.items()
                  if arguments.device == "cpu" or name != "kdtree"]

@@ -111,7 +111,8 @@ class Runs(Stopped):
         self.place.put("other.xyz", "1 2 3\n")
         self.place.put("other.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n")
         for options, question, *said in (
-                ("", {}, "--resume continues it, --force starts again", "an unfinished run with engine grid on cpu, radius 0.1"),
+                ("", {}, "--resume continues it, --force starts again",
+                 "an unfinished run with engine grid on cpu, radius 0.1"),
                 ("--resume --force", {}, "--force"),
                 ("--resume", {"radius": "0.2"}, "its radius is 0.1, expected 0.2"),
                 ("--resume", {"engine": "kdtree"}, "its engine is grid, expected kdtree"),
@@ -237,7 +238,8 @@ class Runs(Stopped):
         self.assertEqual(self.verified(whole, 0), f"{JOURNAL}: sound\n")
         self.verified(whole[:5], 0, "it ends before its first record")
         self.verified(b"", 0)
-        self.verified(whole[:100] + bytes([whole[100] ^ 1]) + whole[101:], 1, "record 0 at byte 16 is damaged", ": damaged\n")
+        self.verified(whole[:100] + bytes([whole[100] ^ 1]) + whole[101:], 1, "record 0 at byte 16 is damaged",
+                      ": damaged\n")
         self.ask("--resume", 3, "record 0 at byte 16 is damaged")
         self.verified(whole[:-3], 0, " is torn, with ", "--resume cuts that off", ": sound\n")
         self.ask("--resume", 0, " is torn, with ", "resumes with")
