@@ -150,7 +150,7 @@ class Plans(Campaigns):
     def test_finished_tasks_are_left_alone_and_are_those_of_a_user(self):
         self.plan("again")
         self.assertEqual(self.listed("again"), "0-5")
-        self.run_tasks("again", "--task 1,4-5")
+        self.run_tasks("again", "--task 1,4,5")
         self.assertEqual(self.listed("again"), "0,2-3")
         self.run_tasks("again", "--all --jobs 2")
         look = self.status("again")
@@ -343,11 +343,13 @@ class Plans(Campaigns):
         self.done("models", {**ONE, "outputs.report": True, "vehicles": {
             "turned": {"model": "ahead_y.xyz", "forward": "+y", "turn": True}, "upright": "ahead_x.xyz",
             "box": "box:0.4,0.3,0.3", "bodies": "boxes.json",
-            "long": {"model": "box:0.4,0.3,0.3", "spacing": 0.05, "as": "points"}}})
+            "a long one": {"model": "box:0.4,0.3,0.3", "spacing": 0.05, "as": "points"}}})
         self.place.ask("compare " + " ".join(f"models/runs/{name}/r00/0.1/out.h5" for name in ("turned", "upright")))
         one, other = self.place.bytes(*(f"models/runs/{name}/r00/0.1/conflicts.csv" for name in ("turned", "upright")))
         self.assertEqual([one, len(one) > 100], [other, True])
         self.assertEqual(len(self.files("models", "runs/*/r00/0.1/report.html")), 5)
+        self.report("models")
+        self.assertIn('"runs/a%20long%20one/r00/0.1/report.html"', (self.place / "models/index.html").read_text())
 
 
 if __name__ == "__main__":

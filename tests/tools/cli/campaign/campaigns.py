@@ -1,5 +1,6 @@
 """A small hall and campaigns in it, for the tests of `clearway campaign`."""
 
+import html.parser
 import json
 import pathlib
 import re
@@ -49,6 +50,24 @@ def tasks_of(place, name):
     return [json.loads(line.rstrip(",")) for line in (place / name / "plan.json").read_text().splitlines()[1:-1]]
 
 
+class OpenElements(html.parser.HTMLParser):
+    """What is wrong with the ends of a page's elements."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.wrong = [], []
+        self.feed(text)
+        self.wrong += self.open
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            self.wrong.append(tag)
+
+
 class Campaigns(Scratch):
     base = CAMPAIGN
 
@@ -76,7 +95,10 @@ class Campaigns(Scratch):
         return self.place.ask(f"campaign status {name} --{which}").stdout.strip()
 
     def report(self, name):
-        return self.place.json(f"campaign report {name} --force")
+        facts = self.place.json(f"campaign report {name} --force")
+        text = (self.place / name / "index.html").read_text()
+        self.assertEqual([OpenElements(text).wrong, text.count("<title>")], [[], 1])
+        return facts
 
     def files(self, name, pattern):
         """When and as which file each was made."""
