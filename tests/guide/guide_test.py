@@ -21,71 +21,50 @@ from pathlib import Path
 import page
 import pages
 import stand_ins
+from stand_ins import PROGRAM, Place
 
 TIMEOUT_SECONDS = 300
 RUN_HERE = ("clearway ", "awk ", "head ", "cut -d", "sed -i")
+TABLES = ("NOT_RUN", "SNIPPETS_ELSEWHERE", "SAMPLES", "WRITTEN", "EXIT_CODES", "SMALLER")
 
 
 class Guide:
-    def __init__(self, program, scratch, update):
-        self.program, self.scratch, self.update = Path(program).resolve(), Path(scratch), update
+    def __init__(self, scratch, update):
+        self.scratch, self.update, self.made = Path(scratch), update, None
         self.faults, self.used, self.ran, self.compared = [], set(), 0, 0
-        links = self.scratch / "bin"
-        links.mkdir()
-        (links / "clearway").symlink_to(self.program)
+        (self.scratch / "bin").mkdir()
+        (self.scratch / "bin/clearway").symlink_to(PROGRAM)
         (self.scratch / "tools").symlink_to(page.ROOT / "tools")
         # Pages show what a machine without a GPU prints.
         self.environment = {**os.environ, "CUDA_VISIBLE_DEVICES": "", "LC_ALL": "C.UTF-8",
-                            "PATH": f"{links}:{os.environ['PATH']}"}
-        self.made = None
+                            "PATH": f"{self.scratch / 'bin'}:{os.environ['PATH']}"}
 
     def say(self, where, text):
         self.faults.append(f"{where}: {text}")
 
     def named(self, table, name, text):
         """What a table of pages.py says of a text of this page; None where it says nothing."""
-        for key in table:
+        for key, value in getattr(pages, table).items():
             if key[0] == name and text.startswith(key[1]):
-                self.used.add((id(table), key))
-                return table[key]
+                self.used.add((table, key))
+                return value
         return None
 
     def all_used(self, names):
-        for title in ("NOT_RUN", "SNIPPETS_ELSEWHERE", "SAMPLES", "WRITTEN", "EXIT_CODES", "SMALLER"):
-            table = getattr(pages, title)
-            for key in table:
-                if key[0] in names and (id(table), key) not in self.used:
-                    self.say("tests/guide/pages.py", f"{title}: no page has {key}")
+        for table in TABLES:
+            for key in getattr(pages, table):
+                if key[0] in names and (table, key) not in self.used:
+                    self.say("tests/guide/pages.py", f"{table}: no page has {key}")
 
-    def shell(self, command, folder):
-        done = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder,
-                              env=self.environment, stdin=subprocess.DEVNULL, text=True,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False,
-                              timeout=TIMEOUT_SECONDS)
-        return done.returncode, done.stdout
-
-    def stand_ins(self):
-        if self.made is None:
-            self.made = self.scratch / "made"
-            self.made.mkdir()
-
-            def clearway(words):
-                subprocess.run([self.program, *words], cwd=self.made, env=self.environment,
-                               check=True, capture_output=True, text=True)
-            stand_ins.make(self.made, clearway)
-        return self.made
-
-    def run_page(self, name):
-        path = page.ROOT / name
+    def follow(self, name):
+        path, blocks, written, changes = page.ROOT / name, [], {}, []
         for line in page.stray_commands(path):
             self.say(name, f"a command outside of a block: {line}")
-        blocks, written = [], {}
         for block in page.blocks(path):
-            file = self.named(pages.WRITTEN, name, block.text.lstrip()) \
-                if block.language not in page.SHELL else None
+            file = None if block.language in page.SHELL else self.named("WRITTEN", name, block.text.lstrip())
             if file is not None:
                 written[file] = block.text
-            elif self.named(pages.SAMPLES, name, block.text) is None:
+            elif self.named("SAMPLES", name, block.text) is None:
                 blocks.append(block)
         for block in blocks:
             where = f"{name}:{block.line}"
@@ -96,93 +75,81 @@ class Guide:
                 (folder / file).write_text(text, encoding="utf-8")
             printed = self.run_block(name, where, block, folder)
             if printed is not None and block.output is not None:
-                self.compare(path, block.output, printed)
+                changes += self.compare(name, block.output, printed)
+        if changes:
+            lines = path.read_text(encoding="utf-8").splitlines()
+            for start, count, new in reversed(changes):
+                lines[start:start + count] = new
+            path.write_text("\n".join(lines) + "\n", encoding="utf-8")
+            print(f"{name}: {len(changes)} outputs written anew")
 
     def is_ours(self, name, where, block):
         """Whether this test runs anything of a block. Tells of a snippet that no test runs."""
         if block.language in page.SHELL:
-            run = [command for command in block.commands
-                   if self.named(pages.NOT_RUN, name, command) is None]
+            run = [command for command in block.commands if self.named("NOT_RUN", name, command) is None]
             for command in run:
                 if not command.startswith(RUN_HERE):
                     self.say(where, f"neither run nor named in pages.py: {command}")
             return any(command.startswith(RUN_HERE) for command in run)
-        if self.named(pages.SNIPPETS_ELSEWHERE, name, block.text.lstrip()) is not None:
+        if self.named("SNIPPETS_ELSEWHERE", name, block.text.lstrip()) is not None:
             return False
         if block.language != "python":
             self.say(where, f"a block of {block.language} that no test runs")
         return block.language == "python"
 
     def folder_for(self, name, block, blocks):
-        if name in pages.FOLLOWED_FROM_NOTHING | pages.FOLLOWED:
-            folder, of = self.scratch / "demo" / Path(name).stem, blocks
-        else:
-            folder, of = self.scratch / "blocks" / f"{Path(name).stem}-{block.line}", [block]
-        if folder.exists():
-            return folder
+        followed = name in pages.FOLLOWED_FROM_NOTHING | pages.FOLLOWED
+        folder = self.scratch / ("demo" if followed else "blocks") / (
+            Path(name).stem if followed else f"{Path(name).stem}-{block.line}")
         if name in pages.FOLLOWED_FROM_NOTHING:
-            folder.mkdir(parents=True)
-        else:
-            commands = [command for other in of for command in other.commands]
-            stand_ins.lend(self.stand_ins(), folder, commands)
+            folder.mkdir(parents=True, exist_ok=True)
+        elif not folder.exists():
+            if self.made is None:
+                self.made = Place(self.scratch / "made")
+                stand_ins.make(self.made)
+            commands = [command for one in (blocks if followed else [block]) for command in one.commands]
+            stand_ins.lend(self.made.folder, folder, commands)
         return folder
 
     def run_block(self, name, where, block, folder):
         """What its commands print; None where one of them is not run or fails."""
         if block.language == "python":
             (folder / "snippet.py").write_text(block.text, encoding="utf-8")
-        commands = block.commands or [f"{sys.executable} snippet.py"]
         printed, complete = "", True
-        for command in commands:
-            if self.named(pages.NOT_RUN, name, command) is not None:
-                complete = False
-                continue
-            if block.commands and not command.startswith(RUN_HERE):
+        for command in block.commands or [f"{sys.executable} snippet.py"]:
+            if self.named("NOT_RUN", name, command) is not None or \
+                    block.commands and not command.startswith(RUN_HERE):
                 complete = False
                 continue
             for (of, there), smaller in pages.SMALLER.items():
                 if of == name and there in command:
-                    self.used.add((id(pages.SMALLER), (of, there)))
+                    self.used.add(("SMALLER", (of, there)))
                     command = command.replace(there, smaller)
-            expected = self.named(pages.EXIT_CODES, name, command) or 0
-            code, text = self.shell(command, folder)
+            done = subprocess.run(["bash", "-o", "pipefail", "-c", command], cwd=folder, env=self.environment,
+                                  stdin=subprocess.DEVNULL, text=True, stdout=subprocess.PIPE,
+                                  stderr=subprocess.STDOUT, check=False, timeout=TIMEOUT_SECONDS)
             self.ran += 1
-            printed += text
-            if code != expected:
-                self.say(where, f"ended with {code}, expected {expected}: {command}\n{text}")
+            printed += done.stdout
+            expected = self.named("EXIT_CODES", name, command) or 0
+            if done.returncode != expected:
+                self.say(where, f"ended with {done.returncode}, expected {expected}: {command}\n{done.stdout}")
                 complete = False
         return printed if complete else None
 
-    def compare(self, path, output, printed):
+    def compare(self, name, output, printed):
+        """The change of the page that would show what was printed, if that is asked for."""
         shown, lines = output.text.splitlines(), printed.splitlines()
         self.compared += 1
         if page.same(shown, lines):
-            return
+            return []
         if self.update:
-            text = path.read_text(encoding="utf-8").splitlines()
-            new = page.refreshed(shown, lines)
-            self.changes.append((output.line - 1, len(shown), new))
-            return
-        self.say(f"{path.relative_to(page.ROOT)}:{output.line}",
-                 "the page shows\n" + output.text + "but this is printed:\n" + printed)
-
-    def follow(self, name):
-        self.changes = []
-        self.run_page(name)
-        if not self.changes:
-            return
-        path = page.ROOT / name
-        lines = path.read_text(encoding="utf-8").splitlines()
-        for start, count, new in reversed(self.changes):
-            lines[start:start + count] = new
-        path.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        print(f"{name}: {len(self.changes)} outputs written anew")
+            return [(output.line - 1, len(shown), page.refreshed(shown, lines))]
+        self.say(f"{name}:{output.line}", f"the page shows\n{output.text}but this is printed:\n{printed}")
+        return []
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__,
-                                     formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program", type=Path)
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="+", default=[])
     parser.add_argument("--without", nargs="+", default=[])
     parser.add_argument("--update", action="store_true")
@@ -191,7 +158,7 @@ def main():
                                   for path in (page.ROOT / "docs" / "guide").glob("**/*.md"))]
     names = [name for name in options.only or every if name not in options.without]
     with tempfile.TemporaryDirectory(prefix="clearway-guide-") as scratch:
-        guide = Guide(options.program, scratch, options.update)
+        guide = Guide(scratch, options.update)
         for name in names:
             guide.follow(name)
         guide.all_used(names)

@@ -1,253 +1,163 @@
 """Campaigns whose runs are divided into shards: their tasks, the order of the work, what a shard
-that fails does to its run, and results as of runs that are not divided.
+that fails does to its run, results as of runs that are not divided, and how they are submitted.
 
 divided_test.py PROGRAM
 """
 
-import json
 import os
-import pathlib
 import shutil
 import subprocess
-import tempfile
-import time
+import unittest
 
-from campaign_scene import expect, make_scene, outcome, program, status, write_campaign
+from campaigns import Campaigns, make_scene, tasks_of
 
-LIMITS = {"memory": "300M", "threads": 1}
-DIVIDED = {**LIMITS, "shard_seconds": 0.03}
+DIVIDED = {"limits.shard_seconds": 0.03}
+RESULTS = "runs/*/*/*/out.h5"
 
 
-class Test:
-    def __init__(self, work):
-        self.work = work
-        make_scene(work, vehicles=2, routes=1)
-        self.path = work / "divided"
-        plan(self, "divided", DIVIDED)
-        self.tasks = [json.loads(line.rstrip(",")) for line in
-                      (self.path / "plan.json").read_text().splitlines()[1:-1]]
+class Divided(Campaigns):
+    @classmethod
+    def make(cls):
+        make_scene(cls.place, vehicles=2, routes=1)
+
+    def setUp(self):
+        self.plan("divided", DIVIDED, more="--force")
+        self.tasks = tasks_of(self.place, "divided")
         self.merge = self.tasks[0]["shard"][1]  # the number of the first one
         self.last = len(self.tasks) - 1
 
+    def results(self, name, pattern=RESULTS):
+        return {file.relative_to(self.place / name): file.read_bytes() for file in (self.place / name).glob(pattern)}
 
-def plan(test, name, limits, **changes):
-    return outcome("campaign", "plan", write_campaign(test.work, limits=limits, **changes), "-o",
-                   test.work / name)
+    def test_a_plan_has_shards_and_merges(self):
+        merge = self.tasks[self.merge]
+        self.assertEqual([merge["shards"], len(self.tasks), self.tasks[1]["folder"]],
+                         [self.merge, 2 * (self.merge + 1), merge["folder"] + "/shards/2"])
+        self.assertGreater(self.merge, 1)
+        self.assertEqual([command[0] for command in merge["commands"][:2]], ["merge", "run"])
+        self.plan("divided", DIVIDED, 0, "is this plan already")
+        self.plan("long", {"limits.shard_seconds": 1000}, 0, "2 tasks")
 
+    def test_a_merge_waits_and_has_the_results_of_whole_runs(self):
+        shards = f"0-{self.merge - 1}"
+        self.run_tasks("divided", f"--task {self.merge}", 2, "waits for v00/r00/0.1/shards/1")
+        self.assertEqual(self.status("divided")["missing"], len(self.tasks))
+        self.run_tasks("divided", f"--task {shards}")
+        look = self.status("divided")
+        self.assertEqual([look["done"], look["list"][self.merge]["status"], self.listed("divided")],
+                         [self.merge, "missing", f"{self.merge}-{self.last}"])
+        page = self.report("divided")
+        self.assertEqual([page["tasks"], page["not_done"]], [2, 2])
+        self.run_tasks("divided", f"--task {self.merge}")
+        self.run_tasks("divided", "--all --jobs 2")
+        self.done("whole")
+        for pattern in (RESULTS, "runs/*/*/*/conflicts.csv"):
+            whole = self.results("whole", pattern)
+            self.assertEqual([len(whole), whole], [2, self.results("divided", pattern)])
+        keys = ["vehicle", "route", "verdict", "colliding_points", "least", "first", "warnings"]
+        runs = [[{key: run[key] for key in keys} for run in self.report(name)["runs"]] for name in ("divided", "whole")]
+        self.assertEqual(runs[0], runs[1])
+        self.assertEqual([run["verdict"] for run in runs[0]], ["conflict"] * 2)
 
-def run(test, *words):
-    return outcome("campaign", "run", test.path, *words)
+        before = self.files("divided", "runs/**/*.h5")
+        self.assertEqual(self.run_tasks("divided").stderr.count("\n"), 1)
+        folder = self.place / "divided" / self.tasks[self.merge]["folder"]
+        (folder / "state.json").unlink()  # as where it was killed after the merge
+        self.run_tasks("divided", f"--task {self.merge}")
+        self.assertEqual(self.files("divided", "runs/**/*.h5"), before)
 
+        for folder_of_shards in (self.place / "divided").glob("runs/*/*/*/shards"):
+            shutil.rmtree(folder_of_shards)
+        self.assertEqual([self.status("divided")["done"], self.listed("divided")], [len(self.tasks), ""])
+        table = (folder / "conflicts.csv").read_bytes()
+        for words in ("--all", "--task 0"):
+            self.run_tasks("divided", words)
+        (folder / "conflicts.csv").unlink()
+        self.run_tasks("divided")
+        self.assertEqual((folder / "conflicts.csv").read_bytes(), table)
+        self.assertEqual(self.files("divided", "runs/**/part.h5"), {}, "a shard was searched in vain")
 
-def plan_has_shards_and_merges(test):
-    merge = test.tasks[test.merge]
-    expect(merge["shards"] == test.merge > 1, f"{merge}")
-    expect(len(test.tasks) == 2 * (test.merge + 1), f"{len(test.tasks)} tasks")
-    expect(merge["commands"][0][0] == "merge" and merge["commands"][1][0] == "run", f"{merge}")
-    expect(test.tasks[1]["folder"] == merge["folder"] + "/shards/2", f"{test.tasks[1]}")
-    for seconds in [0, -1, "long"]:
-        done = plan(test, "refused", {**LIMITS, "shard_seconds": seconds})
-        expect(done.returncode == 3 and "limits.shard_seconds: expected seconds" in done.stderr,
-               done.stderr)
-    done = plan(test, "refused", DIVIDED, query={"first_pose": True, "depth": True})
-    expect(done.returncode == 3 and "depths are not found in shards" in done.stderr, done.stderr)
-    expect(plan(test, "divided", DIVIDED).returncode == 0, "the same plan again")
-    long_enough = plan(test, "long", {**LIMITS, "shard_seconds": 1000})
-    expect("2 tasks" in long_enough.stdout, long_enough.stdout)
+    def test_a_store_that_is_built_anew_between_the_shards_has_shards_of_its_own(self):
+        """It has the same points in other cells."""
+        self.plan("rebuilt", DIVIDED)
+        self.run_tasks("rebuilt", "--task 0")
+        store = self.place / "site.h5"
+        kept = store.rename(self.place / "kept.h5")
+        self.addCleanup(kept.rename, store)
+        self.place.ask("convert environment.las --cell-points 1100 -o site.h5")
+        self.run_tasks("rebuilt", "--task 1", 3, "an input has changed")
+        self.plan("rebuilt", DIVIDED, 2, "is another plan")
+        self.plan("rebuilt", DIVIDED, more="--force")
+        self.assertEqual(self.status("rebuilt")["done"], 0)
+        self.run_tasks("rebuilt")
+        self.done("rebuilt_whole")
+        self.assertEqual(self.results("rebuilt_whole"), self.results("rebuilt"))
 
+    def test_a_campaign_for_gpus_is_planned_without_one_and_its_merges_need_none(self):
+        changes = {**DIVIDED, "limits.device": "cuda"}
+        try:
+            self.plan("gpus", changes)
+        except AssertionError as without_cuda:  # a build without CUDA
+            self.assertIn("cuda", str(without_cuda).lower())
+            return
+        for task in tasks_of(self.place, "gpus"):
+            device = "--device=cpu" if "shards" in task else "--device=cuda"
+            self.assertIn(device, [words for words in task["commands"] if words[0] == "run"][0])
 
-def merge_waits(test):
-    done = run(test, "--task", test.merge)
-    expect(done.returncode == 2 and "waits for v00/r00/0.1/shards/1" in done.stderr, done.stderr)
-    expect(status(test.path)["missing"] == len(test.tasks), "it left a state")
-    expect(run(test, "--task", f"0-{test.merge - 1}").returncode == 0, "the shards")
-    look = status(test.path)
-    expect(look["done"] == test.merge and look["list"][test.merge]["status"] == "missing",
-           f"{look}")
-    missing = program("campaign", "status", test.path, "--missing")
-    expect(missing == f"{test.merge}-{test.last}\n", missing)
-    page = json.loads(program("campaign", "report", test.path, "--json"))
-    expect(page["tasks"] == 2 and page["not_done"] == 2, f"{page}")
-    expect(run(test, "--task", test.merge).returncode == 0, "the merge")
+    def test_a_failed_shard_fails_its_run(self):
+        self.plan("broken", DIVIDED)
+        model = self.place / "vehicles/v01.ply"
+        sound = model.read_bytes()
+        self.addCleanup(model.write_bytes, sound)
+        model.write_bytes(sound[:-100])
+        self.run_tasks("broken", "--all --jobs 2", 3, "waits for v01/r00/0.1/shards/1")
+        look, facts = self.status("broken"), self.report("broken")
+        link = facts["runs"][1]["page"]
+        self.assertEqual([look["failed"], look["missing"], facts["failed"], facts["conflict"], self.listed("broken")],
+                         [self.merge, 1, 1, 1, f"{self.last}"])
+        self.assertTrue(link.endswith("/shards/1/log.txt") and (self.place / "broken" / link).exists(), link)
 
+    def submit(self, words, code=0, said="", name="divided", array_size="MaxArraySize            = 1001"):
+        """Runs submit.sh with programs in the place of Slurm's. What each sbatch was given: its words,
+        and then its standard input."""
+        shutil.rmtree(self.place / "bin", ignore_errors=True)
+        self.place.put("bin/scontrol", f"#!/bin/sh\necho '{array_size}'\n")
+        self.place.put("bin/sbatch", "#!/bin/sh\ncd $(dirname $0)\nnumber=$(ls | grep -c job)\n"
+                       "{ echo \"$@\"; cat; } > job$number < /dev/stdin\necho $number\n")
+        for tool in ("scontrol", "sbatch"):
+            (self.place / "bin" / tool).chmod(0o755)
+        done = subprocess.run([self.place / name / "submit.sh", *words], stdin=subprocess.DEVNULL,
+                              text=True, capture_output=True, timeout=60, check=False,
+                              env={**os.environ, "PATH": f"{self.place / 'bin'}:{os.environ['PATH']}"})
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertIn(said, done.stdout + done.stderr)
+        return [path.read_text() for path in sorted((self.place / "bin").glob("job*"))]
 
-def results_are_those_of_whole_runs(test):
-    done = run(test, "--all", "--jobs", "2")
-    expect(done.returncode == 0, done.stderr)
-    plan(test, "whole", LIMITS)
-    program("campaign", "run", test.work / "whole", "--all")
-    for whole in (test.work / "whole").glob("runs/*/*/*"):
-        divided = test.path / whole.relative_to(test.work / "whole")
-        for name in ["out.h5", "conflicts.csv"]:
-            expect((whole / name).read_bytes() == (divided / name).read_bytes(), name)
-    facts = [json.loads(program("campaign", "report", path, "--json", "--force"))
-             for path in [test.path, test.work / "whole"]]
-    keys = ["vehicle", "route", "verdict", "colliding_points", "least", "first", "warnings"]
-    runs = [[{key: run[key] for key in keys} for run in one["runs"]] for one in facts]
-    expect(runs[0] == runs[1], f"{runs}")
-    expect(facts[0]["conflict"] == 2, f"{facts[0]}")
+    def test_lists_of_tasks_are_submitted(self):
+        """An empty list, such as that of what is missing where nothing is, submits nothing."""
+        last, merges = self.last, f"{self.merge},{self.last}"
+        shards = ",".join(str(i) for i in range(last) if i != self.merge)
+        for words, code, said, *arrays in (
+                ([], 0, "tasks: job", shards, merges), ([""], 0, "nothing is submitted"),
+                ([" \n"], 0, "nothing is submitted"), (["0"], 0, "tasks: job", "0"),
+                (["1,0,1"], 0, "tasks: job", "0,1"), ([f"{last}"], 0, "tasks: job", f"{last}"),
+                ([f"{last + 1}"], 2, f"from 0 to {last}"), (["1-0"], 2, "that ascend"),
+                (["all"], 2, "all: expected numbers"), (["0,"], 2, "0,: expected numbers"),
+                (["0", "1"], 2, "one list of tasks")):
+            given = [job.splitlines()[0] for job in self.submit(words, code, said)]
+            self.assertEqual(["--wrap" in one for one in given], [False] * len(arrays) + [True] * bool(arrays))
+            for array, one in zip(arrays, given):
+                self.assertIn(f"--array={array}", one.split())
+        self.assertEqual(self.submit(["0"], 4, "MaxArraySize", array_size=""), [])
 
-
-def finished_ones_stay(test):
-    before = {file: file.stat().st_mtime_ns for file in test.path.glob("runs/**/*.h5")}
-    again = run(test, "--all")
-    expect(again.returncode == 0 and again.stderr.count("\n") == 1, again.stderr)
-    state = test.path / test.tasks[test.merge]["folder"] / "state.json"
-    state.unlink()  # as where it was killed after the merge
-    expect(run(test, "--task", test.merge).returncode == 0, "the merge again")
-    after = {file: file.stat().st_mtime_ns for file in test.path.glob("runs/**/*.h5")}
-    expect(before == after, "a finished result was made again")
-
-
-def finished_runs_need_no_shards(test):
-    for shards in test.path.glob("runs/*/*/*/shards"):
-        shutil.rmtree(shards)
-    look = status(test.path)
-    expect(look["done"] == len(test.tasks), f"{look}")
-    expect(program("campaign", "status", test.path, "--missing") == "", "missing")
-    expect(run(test, "--all").returncode == 0, "all of it")
-    expect(run(test, "--task", 0).returncode == 0, "a shard")
-    expect(not list(test.path.glob("runs/**/shards/*/part.h5")), "a shard was searched in vain")
-    folder = test.path / test.tasks[test.merge]["folder"]
-    table = (folder / "conflicts.csv").read_bytes()
-    (folder / "conflicts.csv").unlink()
-    done = run(test, "--all")
-    expect(done.returncode == 0, done.stderr)
-    expect((folder / "conflicts.csv").read_bytes() == table, "the output again")
-    expect(not list(test.path.glob("runs/**/part.h5")), "shards were searched for an output")
-
-
-def new_store_has_shards_of_its_own(test):
-    """A store that is built anew between the shards of a run has the same points in other cells."""
-    plan(test, "rebuilt", DIVIDED)
-    test.path = test.work / "rebuilt"
-    store, kept = test.work / "site.h5", test.work / "kept.h5"
-    expect(run(test, "--task", 0).returncode == 0, "a shard of the old store")
-    store.rename(kept)
-    program("convert", test.work / "hall/environment.las", "--cell-points", 1100, "-o", store)
-    done = run(test, "--task", 1)
-    expect(done.returncode == 3 and "an input has changed" in done.stderr, done.stderr)
-    done = plan(test, "rebuilt", DIVIDED)
-    expect(done.returncode == 2 and "is another plan" in done.stderr, done.stderr)
-    expect(outcome("campaign", "plan", test.work / "campaign.json", "-o", test.path,
-                   "--force").returncode == 0, "the plan of the new store")
-    look = status(test.path)
-    expect(look["done"] == 0, f"a shard of the old store counts: {look}")
-    done = run(test, "--all")
-    expect(done.returncode == 0, done.stderr)
-    for whole in (test.work / "whole").glob("runs/*/*/*/out.h5"):
-        divided = test.path / whole.relative_to(test.work / "whole")
-        expect(whole.read_bytes() == divided.read_bytes(), "the result of the new store")
-    store.unlink()
-    kept.rename(store)
-
-
-def merges_need_no_gpu(test):
-    """A campaign for GPUs is planned without one."""
-    done = plan(test, "gpus", {**DIVIDED, "device": "cuda"})
-    if done.returncode != 0:  # of a build without CUDA
-        expect("cuda" in done.stderr.lower(), done.stderr)
-        return
-    tasks = [json.loads(line.rstrip(",")) for line in
-             (test.work / "gpus/plan.json").read_text().splitlines()[1:-1]]
-    for task in tasks:
-        device = "--device=cpu" if "shards" in task else "--device=cuda"
-        of_run = [words for words in task["commands"] if words[0] == "run"]
-        expect(device in of_run[0], f"{task}")
-
-
-def submit(test, *words, folder="slurm", scontrol="MaxArraySize            = 1001"):
-    """Runs submit.sh with programs in the place of Slurm's. Returns how it ended, and what each
-    sbatch was given: its words, and then its standard input."""
-    programs = test.work / "bin"
-    shutil.rmtree(programs, ignore_errors=True)
-    programs.mkdir()
-    for name, text in [("scontrol", f"echo '{scontrol}'"),
-                       ("sbatch", f"number=$(ls {programs} | grep -c job)\n"
-                                  f"{{ echo \"$@\"; cat; }} > {programs}/job$number < "
-                                  "/dev/stdin\necho $number")]:
-        (programs / name).write_text("#!/bin/sh\n" + text + "\n")
-        (programs / name).chmod(0o755)
-    done = subprocess.run([test.work / folder / "submit.sh", *words], stdin=subprocess.DEVNULL,
-                          text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=60,
-                          env={**os.environ, "PATH": f"{programs}:{os.environ['PATH']}"})
-    return done, [path.read_text() for path in sorted(programs.glob("job*"))]
+    def test_merges_ask_slurm_for_no_gpu(self):
+        self.plan("slurm", {**DIVIDED, "slurm": ["--gres=gpu:1", "--time=10"]})
+        shards, merges, _ = self.submit([], name="slurm")
+        self.assertIn("--dependency=afterany:0", merges.splitlines()[0])
+        self.assertIn("#SBATCH --gres=gpu:1\n", shards)
+        self.assertEqual([line for line in shards.splitlines()[1:] if line != "#SBATCH --gres=gpu:1"],
+                         merges.splitlines()[1:])
 
 
-def submit_takes_lists(test):
-    """An empty list, such as that of what is missing where nothing is, submits nothing."""
-    program("campaign", "plan", write_campaign(test.work, limits=DIVIDED), "-o",
-            test.work / "lists")
-    last = test.last
-    runs = [i for i in range(last + 1) if i not in (test.merge, last)]
-    merges = f"{test.merge},{last}"
-    for words, code, said, arrays in [
-            ([], 0, "tasks: job", [",".join(map(str, runs)), merges]),
-            ([""], 0, "nothing is submitted", []),
-            ([" \n"], 0, "nothing is submitted", []),
-            (["0"], 0, "tasks: job", ["0"]),
-            (["1,0,1"], 0, "tasks: job", ["0,1"]),
-            ([f"{last}"], 0, "tasks: job", [f"{last}"]),
-            ([f"{last + 1}"], 2, f"from 0 to {last}", []),
-            (["1-0"], 2, "that ascend", []),
-            (["all"], 2, "all: expected numbers", []),
-            (["0,"], 2, "0,: expected numbers", []),
-            (["0", "1"], 2, "one list of tasks", [])]:
-        done, jobs = submit(test, *words, folder="lists")
-        expect(done.returncode == code and said in done.stdout + done.stderr, f"{words}: {done}")
-        given = [job.splitlines()[0] for job in jobs]
-        expect([words for words in given if "--wrap" in words] == given[len(arrays):],
-               f"{words}: the report is the last job: {given}")
-        expect(len(given) == len(arrays) + (1 if arrays else 0), f"{words}: {given}")
-        expect(all(f"--array={array}" in one.split() for array, one in zip(arrays, given)),
-               f"{words}: {given}")
-    done, jobs = submit(test, "0", folder="lists", scontrol="")
-    expect(done.returncode == 4 and "MaxArraySize" in done.stderr and not jobs, f"{done}")
-    done = run(test, "--task", "")
-    expect(done.returncode == 0 and "nothing to do" in done.stderr, done.stderr)
-
-
-def merges_ask_slurm_for_no_gpu(test):
-    campaign = write_campaign(test.work, limits=DIVIDED, slurm=["--gres=gpu:1", "--time=10"])
-    program("campaign", "plan", campaign, "-o", test.work / "slurm")
-    done, jobs = submit(test)
-    expect(done.returncode == 0, done.stderr)
-    shards, merges, _ = jobs
-    expect("--dependency=afterany:0" in merges.splitlines()[0], merges)
-    expect("#SBATCH --gres=gpu:1\n" in shards and "#SBATCH --gres" not in merges, merges)
-    expect([line for line in shards.splitlines()[1:] if line != "#SBATCH --gres=gpu:1"]
-           == merges.splitlines()[1:], "the rest of the script differs")
-
-
-def failed_shard_fails_its_run(test):
-    plan(test, "broken", DIVIDED)
-    test.path = test.work / "broken"
-    model = test.work / "vehicles/v01.ply"
-    sound = model.read_bytes()
-    model.write_bytes(sound[:-100])
-    done = run(test, "--all", "--jobs", "2")
-    expect(done.returncode == 3 and "waits for v01/r00/0.1/shards/1" in done.stderr, done.stderr)
-    look = status(test.path)
-    expect(look["failed"] == test.merge and look["missing"] == 1, f"{look}")
-    facts = json.loads(program("campaign", "report", test.path, "--json"))
-    expect(facts["failed"] == 1 and facts["conflict"] == 1, f"{facts}")
-    link = facts["runs"][1]["page"]
-    expect(link.endswith("/shards/1/log.txt") and (test.path / link).exists(), link)
-    expect(program("campaign", "status", test.path, "--missing") == f"{test.last}\n", "missing")
-    model.write_bytes(sound)
-
-
-def main():
-    with tempfile.TemporaryDirectory() as folder:
-        test = Test(pathlib.Path(folder))
-        for check in [plan_has_shards_and_merges, merge_waits, results_are_those_of_whole_runs,
-                      finished_ones_stay, finished_runs_need_no_shards,
-                      new_store_has_shards_of_its_own, merges_need_no_gpu,
-                      submit_takes_lists, merges_ask_slurm_for_no_gpu,
-                      failed_shard_fails_its_run]:
-            begin = time.monotonic()
-            check(test)
-            print(f"{check.__name__}: {time.monotonic() - begin:.1f} s", flush=True)
-
-
-main()
+if __name__ == "__main__":
+    unittest.main()

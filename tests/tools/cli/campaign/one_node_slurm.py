@@ -2,12 +2,13 @@
 configuration, on free ports. All of it ends with the `with` block, also after a failure."""
 
 import os
-import pathlib
+import pwd
 import shutil
 import signal
 import socket
 import subprocess
 import time
+from pathlib import Path
 
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "scontrol", "squeue", "scancel"]
 SBIN = "/usr/sbin"
@@ -41,7 +42,7 @@ JobRequeue=1
 MinJobAge=600
 MaxArraySize={max_array}
 SchedulerParameters=defer,sched_interval=1,sched_min_interval=100000,batch_sched_delay=0,bf_interval=1
-NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} Boards=1 SocketsPerBoard=1 CoresPerSocket={cpus} ThreadsPerCore=1 RealMemory=900 State=UNKNOWN
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 Boards=1 SocketsPerBoard=1 CoresPerSocket=2 ThreadsPerCore=1 RealMemory=900 State=UNKNOWN
 PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
 """
 
@@ -62,81 +63,65 @@ def free_ports(count):
     return ports
 
 
+def signalled(number, which):
+    """Whether there was a process with this number to get the signal."""
+    try:
+        os.kill(number, which)
+        return True
+    except ProcessLookupError:
+        return False
+
+
 class OneNodeSlurm:
-    def __init__(self, folder, cpus=2, max_array=1001):
-        self.folder = pathlib.Path(folder)
-        self.cpus, self.max_array = cpus, max_array
-        self.environment = dict(os.environ, SLURM_CONF=str(self.folder / "slurm.conf"))
-        self.environment["PATH"] += ":" + SBIN
+    def __init__(self, folder, max_array):
+        self.folder, self.max_array = Path(folder), max_array
+        self.environment = {**os.environ, "SLURM_CONF": f"{folder}/slurm.conf", "PATH": f"{os.environ['PATH']}:{SBIN}"}
 
     def __enter__(self):
         try:
             self._start()
         except BaseException:
-            self._stop()
+            self.__exit__()
             raise
         return self
 
-    def __exit__(self, *_):
-        self._stop()
-
     def run(self, *command, check=True):
-        done = subprocess.run([str(word) for word in command], env=self.environment, text=True,
+        done = subprocess.run(list(map(str, command)), env=self.environment, text=True, check=False,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if check and done.returncode != 0:
             raise RuntimeError(f"{command}: exit code {done.returncode}: {done.stdout}")
         return done.stdout
 
     def _start(self):
-        for name in ["state", "spool", "log", "munge"]:
+        for name in ("state", "spool", "log", "munge"):
             (self.folder / name).mkdir(parents=True)
-        (self.folder / "munge").chmod(0o700)
-        key = self.folder / "munge/key"
-        key.write_bytes(os.urandom(64))
-        key.chmod(0o400)
-        user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout
+        munge = self.folder / "munge"
+        munge.chmod(0o700)
+        (munge / "key").write_bytes(os.urandom(64))
+        (munge / "key").chmod(0o400)
         host = socket.gethostname().split(".")[0]
         (self.folder / "slurm.conf").write_text(CONFIGURATION.format(
-            host=host, user=user.strip(), folder=self.folder, ports=free_ports(2), cpus=self.cpus,
+            host=host, user=pwd.getpwuid(os.getuid()).pw_name, folder=self.folder, ports=free_ports(2),
             max_array=self.max_array))
-        munge = self.folder / "munge"
-        self.run("munged", "--force", f"--key-file={munge}/key", f"--socket={munge}/socket",
-                 f"--pid-file={munge}/pid", f"--log-file={munge}/log", f"--seed-file={munge}/seed",
-                 "--num-threads=2")
+        self.run("munged", "--force", "--num-threads=2", *(f"--{option}={munge}/{option.split('-')[0]}" for option in (
+            "key-file", "socket", "pid-file", "log-file", "seed-file")))
         self.run("slurmctld", "-c", "-f", self.folder / "slurm.conf")
         self.run("slurmd", "-f", self.folder / "slurm.conf")
-        self._wait_until_idle(host)
-
-    def _wait_until_idle(self, host):
         last = time.monotonic() + 30
         while "State=IDLE" not in self.run("scontrol", "show", "node", host, check=False):
             if time.monotonic() > last:
-                raise RuntimeError("the node does not come up: " +
-                                   (self.folder / "log/slurmctld").read_text()[-3000:])
+                raise RuntimeError("the node does not come up: " + (self.folder / "log/slurmctld").read_text()[-3000:])
             time.sleep(0.2)
 
-    def _stop(self):
-        """Only what was started here, by the numbers that it wrote itself."""
-        self.run("scancel", "--user=" + str(os.getuid()), check=False)
+    def __exit__(self, *_):
+        """Ends what was started here, by the numbers that it wrote itself."""
+        self.run("scancel", f"--user={os.getuid()}", check=False)
         self.run("scontrol", "shutdown", check=False)
-        files = [self.folder / name for name in ["slurmctld.pid", "slurmd.pid", "munge/pid"]]
+        files = [self.folder / name for name in ("slurmctld.pid", "slurmd.pid", "munge/pid")]
         numbers = [int(file.read_text()) for file in files if file.exists()]
-        self._wait_for_end(numbers[:-1], 5)
-        for number in numbers:
-            self._signal(number, signal.SIGTERM)
-        self._wait_for_end(numbers, 5)
-        for number in numbers:
-            self._signal(number, signal.SIGKILL)
-
-    @staticmethod
-    def _signal(number, which):
-        try:
-            os.kill(number, which)
-            return True
-        except ProcessLookupError:
-            return False
-
-    def _wait_for_end(self, numbers, seconds):
-        last = time.monotonic() + seconds
-        while time.monotonic() < last and any(self._signal(number, 0) for number in numbers):
-            time.sleep(0.1)
+        for waited, which in ((numbers[:-1], signal.SIGTERM), (numbers, signal.SIGKILL)):
+            last = time.monotonic() + 5
+            while time.monotonic() < last and any(signalled(number, 0) for number in waited):
+                time.sleep(0.1)
+            for number in numbers:
+                signalled(number, which)

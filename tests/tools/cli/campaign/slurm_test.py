@@ -8,220 +8,148 @@ slurm_test.py PROGRAM
 
 import json
 import os
-import pathlib
 import signal
 import sys
-import tempfile
 import time
+import unittest
+from pathlib import Path
 
-from campaign_scene import expect, make_scene, program, status, write_campaign
+from campaigns import LIMITS, Campaigns, make_scene, tasks_of
 from one_node_slurm import OneNodeSlurm, what_is_missing
 
 VEHICLES, SLOW, BROKEN_SLOW, BROKEN_VEHICLE = 24, (3, 5, 8), 5, 13
 MAX_ARRAY = 20  # more tasks become two arrays
-LIMITS = {"memory": "300M", "threads": 1, "shard_seconds": 0.18}  # divides the slow ones alone
+NAME = "a campaign"
 
 
-def children_of(number):
-    """Processes that a process started."""
-    found = pathlib.Path(f"/proc/{number}/task/{number}/children")
+def words_of(number):
     try:
-        return [int(word) for word in found.read_text().split()]
+        return Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
     except FileNotFoundError:
         return []
 
 
-def command_line(number):
-    try:
-        return pathlib.Path(f"/proc/{number}/cmdline").read_bytes().split(b"\0")
-    except FileNotFoundError:
-        return []
+def child_of(number):
+    return int(Path(f"/proc/{number}/task/{number}/children").read_text().split()[0])
 
 
-def task_process(folder, task):
-    """Of `clearway campaign run DIR --task N`, or None."""
-    for entry in pathlib.Path("/proc").iterdir():
-        if not entry.name.isdigit():
-            continue
-        words = command_line(int(entry.name))
-        if b"campaign" in words and str(folder).encode() in words and \
-                words[-3:-1] == [b"--task", str(task).encode()]:
-            return int(entry.name)
-    return None
-
-
-def held(folder, task):
-    """The process of a task, its command stopped so that it cannot end; None where it has."""
-    process = task_process(folder, task)
-    try:
-        os.kill(children_of(process)[0], signal.SIGSTOP)
-        return process
-    except (ProcessLookupError, IndexError, TypeError):
-        return None
-
-
-def has_pending(number, which):
-    text = pathlib.Path(f"/proc/{number}/status").read_text()
+def is_pending(number, which):
+    text = Path(f"/proc/{number}/status").read_text()
     return int(text.split("ShdPnd:")[1].split()[0], 16) >> (which - 1) & 1
 
 
-class Campaign:
-    def __init__(self, path, slurm):
-        self.path, self.slurm = path, slurm
-        self.tasks = [json.loads(line.rstrip(",")) for line in
-                      (path / "plan.json").read_text().splitlines()[1:-1]]
-        lost = [task for task in self.tasks if task["vehicle"] == f"v{BROKEN_SLOW:02}"]
-        self.lost = [task["task"] for task in lost if "shard" in task]
-        self.lost_merge = lost[-1]["task"]
-        self.shards = [task["task"] for task in self.tasks
-                       if "shard" in task and task["task"] not in self.lost]
-        self.merges = [task["task"] for task in self.tasks if "shards" in task]
-        expect(len(self.merges) == len(SLOW), f"{len(self.merges)} runs are divided")
-        self.killed = self.stopped = None
-        self.broken = next(task["task"] for task in self.tasks
-                           if task["vehicle"] == f"v{BROKEN_VEHICLE:02}")
-
-    def disturb(self, look):
-        """Kills one shard that is met while it runs, and has Slurm send TERM to another one."""
-        for task in self.shards:
-            if look["list"][task]["status"] != "running" or task in (self.killed, self.stopped):
-                continue
-            if self.killed is None:
-                self.killed = task if self.kill(task) else None
-            elif self.stopped is None:
-                self.stopped = task if self.stop(task) else None
-
-    def kill(self, task):
-        process = held(self.path, task)
-        if process is None:
-            return False
-        os.kill(process, signal.SIGKILL)
-        return True
-
-    def stop(self, task):
-        """As Slurm does 60 seconds before the end: to the script alone."""
-        process = held(self.path, task)
-        if process is None:
-            return False
-        command = children_of(process)[0]
-        self.slurm.run("scancel", "--batch", "--signal=TERM", self.element(task))
-        last = time.monotonic() + 20
-        while not has_pending(command, signal.SIGTERM):
-            expect(time.monotonic() < last, "the script does not pass TERM on")
-            time.sleep(0.02)
-        os.kill(command, signal.SIGCONT)
-        return True
+class Slurm(Campaigns):
+    @classmethod
+    def make(cls):
+        make_scene(cls.place, vehicles=VEHICLES, routes=1, slow=SLOW)
 
     def element(self, task):
         """Of a job array."""
         before = 2 if task in self.merges else 0  # jobs
         return f"{self.jobs[before + task // MAX_ARRAY]}_{task % MAX_ARRAY}"
 
-    def log(self, task):
-        return (self.path / f"slurm/{self.element(task)}.log").read_text()
+    def held(self, task):
+        """The process of a task, and its command, which is stopped so that it cannot end; None where it
+        has."""
+        wanted = [b"--task", str(task).encode()]
+        found = [int(entry.name) for entry in Path("/proc").iterdir() if entry.name.isdigit()
+                 and words_of(entry.name)[-3:-1] == wanted and str(self.path).encode() in words_of(entry.name)]
+        try:
+            os.kill(child_of(found[0]), signal.SIGSTOP)
+            return found[0], child_of(found[0])
+        except (ProcessLookupError, FileNotFoundError, IndexError):
+            return None
 
-    def submit(self):
-        said = self.slurm.run(self.path / "submit.sh")
-        self.jobs = said.split("tasks: job ")[1].split(";")[0].split(":")
-        expect(len(self.jobs) == 3, said)
+    def disturb(self, look):
+        """Kills one shard that is met while it runs, and has Slurm send TERM to another one, as it does
+        60 seconds before the end: to the script alone."""
+        for task in self.shards:
+            if look["list"][task]["status"] != "running" or task in self.disturbed or len(self.disturbed) == 2:
+                continue
+            held = self.held(task)
+            if held is None:
+                continue
+            self.disturbed.append(task)
+            process, command = held
+            if len(self.disturbed) == 1:
+                os.kill(process, signal.SIGKILL)
+                continue
+            self.slurm.run("scancel", "--batch", "--signal=TERM", self.element(task))
+            last = time.monotonic() + 20
+            while not is_pending(command, signal.SIGTERM):
+                self.assertLess(time.monotonic(), last, "the script does not pass TERM on")
+                time.sleep(0.02)
+            os.kill(command, signal.SIGCONT)
 
-    def wait(self, seconds):
-        last = time.monotonic() + seconds
-        done_before = set()
-        while True:
-            look = status(self.path)
+    def wait(self):
+        last, done_before, queue = time.monotonic() + 100, set(), None
+        while queue != []:
+            self.assertLess(time.monotonic(), last, f"it takes too long: {queue}")
+            look = self.status(f"'{NAME}'")
             queue = self.slurm.run("squeue", "-h", "-r", "-o", "%i %T").splitlines()
             done = {one["task"] for one in look["list"] if one["status"] == "done"}
-            expect(done_before <= done, "a task that was done is no longer")
+            self.assertLessEqual(done_before, done, "a task that was done is no longer")
             for task in done - done_before:
-                expect(f"{self.element(task)} PENDING" not in queue, f"{task} is done and waits")
+                self.assertNotIn(f"{self.element(task)} PENDING", queue)
             done_before = done
             self.disturb(look)
-            if not queue:
-                expect(None not in (self.killed, self.stopped), "no two shards were met running")
-                return status(self.path)
-            expect(time.monotonic() < last, "it takes too long: " + "; ".join(queue))
             time.sleep(0.1)
+        self.assertEqual(len(self.disturbed), 2, "no two shards were met running")
+        return self.status(f"'{NAME}'")
+
+    def test_a_campaign_on_slurm(self):
+        self.plan(f"'{NAME}'", {"limits": {**LIMITS, "shard_seconds": 0.18}})  # divides the slow ones alone
+        self.path, self.disturbed, tasks = self.place / NAME, [], tasks_of(self.place, NAME)
+        lost = [task["task"] for task in tasks if task["vehicle"] == f"v{BROKEN_SLOW:02}"]
+        lost_merge = lost.pop()
+        self.shards = [task["task"] for task in tasks if "shard" in task and task["task"] not in lost]
+        self.merges = [task["task"] for task in tasks if "shards" in task]
+        broken = next(task["task"] for task in tasks if task["vehicle"] == f"v{BROKEN_VEHICLE:02}")
+        self.assertEqual(len(self.merges), len(SLOW))
+        for vehicle in (BROKEN_VEHICLE, BROKEN_SLOW):
+            file = self.place / f"vehicles/v{vehicle:02}.ply"
+            file.write_bytes(file.read_bytes()[:-100])
+        with OneNodeSlurm(self.place / "slurm", MAX_ARRAY) as self.slurm:
+            self.assertEqual(self.listed(f"'{NAME}'"), f"0-{len(tasks) - 1}")
+            said = self.slurm.run(self.path / "submit.sh")
+            self.jobs = said.split("tasks: job ")[1].split(";")[0].split(":")
+            self.assertEqual(len(self.jobs), 3, said)
+            look = self.wait()
+
+        failed = sorted([broken, *lost])
+        self.assertEqual([look["done"], look["failed"], self.listed(f"'{NAME}'"), self.listed(f"'{NAME}'", "failed")],
+                         [len(tasks) - len(failed) - 1, len(failed), f"{lost_merge}",
+                          f"{failed[0]}-{failed[-2]},{failed[-1]}"])
+        self.assertEqual([look["list"][broken][key] for key in ("exit_code", "tries")], [3, 1])
+        self.assertEqual([look["list"][task]["tries"] for task in self.disturbed], [2, 2])
+        states = [self.path / one["folder"] / "state.json" for one in look["list"]]
+        page = self.path / "index.html"
+        self.assertIn("failed (3)", page.read_text())
+        self.assertEqual((self.path / "slurm/report.log").read_text().count("index.html"), 1)
+        self.assertGreaterEqual(page.stat().st_mtime,
+                                max(file.stat().st_mtime for file in self.path.glob("runs/**/state.json")))
+
+        # Merges come once, after all tasks that are none.
+        last = max(state.stat().st_mtime for task, state in enumerate(states) if task not in self.merges)
+        self.assertEqual(look["list"][lost_merge]["status"], "missing")
+        for merge in set(self.merges) - {lost_merge}:
+            folder = states[merge].parent
+            run = json.loads((folder / "run.json").read_text())
+            self.assertEqual([look["list"][merge]["tries"], run["verdict"], run["was_finished"]], [1, "conflict", True])
+            self.assertGreaterEqual((folder / "out.h5").stat().st_mtime, last)
+
+        # What the scripts said.
+        logs = [(self.path / f"slurm/{self.element(task)}.log").read_text() for task in range(len(tasks))]
+        self.assertIn("exit code 5, queued again", logs[self.disturbed[1]])
+        self.assertIn("exit code 3", logs[broken])
+        for words in ("which is not done", "exit code 2"):
+            self.assertIn(words, logs[lost_merge])
+        self.assertEqual([task for task, log in enumerate(logs) if "queued again" in log], sorted(self.disturbed))
 
 
-def check_logs(campaign):
-    """What the scripts said."""
-    killed, stopped, broken = campaign.killed, campaign.stopped, campaign.broken
-    text = {task: campaign.log(task) for task in range(len(campaign.tasks))}
-    expect("queued again" in text[killed], "the killed task was not queued again")
-    expect("exit code 5, queued again" in text[stopped], "TERM: " + text[stopped])
-    expect("exit code 3" in text[broken] and "queued again" not in text[broken],
-           "the broken task: " + text[broken])
-    lost = text[campaign.lost_merge]
-    expect("which is not done" in lost and "exit code 2" in lost, "the lost merge: " + lost)
-    others = [task for task in text if task not in (killed, stopped)]
-    again = [task for task in others if "queued again" in text[task]]
-    expect(not again, f"queued again without a reason: {again}")
-
-
-def check_merges(campaign, look):
-    """Once, after all tasks that are none."""
-    states = [campaign.path / one["folder"] / "state.json" for one in look["list"]]
-    last = max(state.stat().st_mtime for task, state in enumerate(states)
-               if task not in campaign.merges)
-    for merge in campaign.merges:
-        if merge == campaign.lost_merge:
-            expect(look["list"][merge]["status"] == "missing", f"{look['list'][merge]}")
-            continue
-        expect(look["list"][merge]["tries"] == 1, f"merged twice: {look['list'][merge]}")
-        result = states[merge].parent / "out.h5"
-        expect(result.stat().st_mtime >= last, "a merge came before the end of the others")
-        run = json.loads((states[merge].parent / "run.json").read_text())
-        expect(run["verdict"] == "conflict" and run["was_finished"], f"{run}")
-
-
-def check_end(campaign, look):
-    path = campaign.path
-    failed = sorted([campaign.broken, *campaign.lost])
-    expect(look["done"] == len(campaign.tasks) - len(failed) - 1 and look["failed"] == len(failed),
-           f"at the end: {look}")
-    broken = look["list"][campaign.broken]
-    expect(broken["exit_code"] == 3 and broken["tries"] == 1, f"the broken task: {broken}")
-    expect(look["list"][campaign.stopped]["tries"] == 2, "the stopped task was not tried twice")
-    expect(look["list"][campaign.killed]["tries"] == 2, "the killed task was not tried twice")
-    page = (path / "index.html").read_text()
-    expect("failed (3)" in page, "the page hides the failure")
-    reports = (path / "slurm/report.log").read_text().count("index.html")
-    expect(reports == 1, f"{reports} reports")
-    newest = max(file.stat().st_mtime for file in path.glob("runs/**/state.json"))
-    expect((path / "index.html").stat().st_mtime >= newest, "the report came before the end")
-    expect(program("campaign", "status", path, "--missing") == f"{campaign.lost_merge}\n",
-           "what is missing")
-    said = program("campaign", "status", path, "--failed")
-    last = failed[-1]
-    expect(said == f"{failed[0]}-{failed[-2]},{last}\n", "--failed: " + said)
-    check_merges(campaign, look)
-    check_logs(campaign)
-
-
-def main():
+if __name__ == "__main__":
     missing = what_is_missing()
     if missing:
         print("skipped: not installed: " + ", ".join(missing))
         sys.exit(77)
-    begin = time.monotonic()
-    with tempfile.TemporaryDirectory() as folder:
-        work = pathlib.Path(folder)
-        make_scene(work, vehicles=VEHICLES, routes=1, slow=SLOW)
-        path = work / "a campaign"
-        program("campaign", "plan", write_campaign(work, limits=LIMITS), "-o", path)
-        for vehicle in (BROKEN_VEHICLE, BROKEN_SLOW):
-            broken = work / f"vehicles/v{vehicle:02}.ply"
-            broken.write_bytes(broken.read_bytes()[:-100])
-        with OneNodeSlurm(work / "slurm", max_array=MAX_ARRAY) as slurm:
-            campaign = Campaign(path, slurm)
-            missing = program("campaign", "status", path, "--missing")
-            expect(missing == f"0-{len(campaign.tasks) - 1}\n", "before the start")
-            campaign.submit()
-            look = campaign.wait(100)
-        check_end(campaign, look)
-    print(f"{len(campaign.tasks)} tasks, {len(campaign.merges)} of them merges, one killed, one "
-          f"stopped, one broken: {time.monotonic() - begin:.0f} s")
-
-
-main()
+    unittest.main()

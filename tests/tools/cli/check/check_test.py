@@ -4,7 +4,6 @@
     check_test.py CLEARWAY
 """
 
-import json
 import math
 import os
 import random
@@ -12,7 +11,6 @@ import re
 import shlex
 import shutil
 import signal
-import struct
 import subprocess
 import sys
 import tempfile
@@ -20,783 +18,496 @@ import time
 import unittest
 from pathlib import Path
 
-PROGRAM = os.path.abspath(sys.argv[1])
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
+from place import PROGRAM, Place, Scratch, write_las, zone  # noqa: E402
+
 FILES = ["site.h5", "result.h5", "conflicts.csv", "stations.csv", "report.html"]
-QUESTION = "--model model.ply --trajectory trajectory.txt --radius 0.1"
+INPUTS = "--model model.ply --trajectory trajectory.txt"
+QUESTION = f"{INPUTS} --radius 0.1"
+SITE = f"scans {QUESTION} -o site"
+BY_HAND = f"run --env site/site.h5 {QUESTION} --first-pose --clearance 0.3 --profile 0.5"
+DONE = "nothing was to be done"
+MISSED = "What lies between two poses can be missed"
+TWO_BODIES = [{"name": "front", "model": "model.ply"}, {"name": "rear", "model": "model.ply", "at": -4}]
 
 
-def clearway(words, folder, **options):
-    words = shlex.split(words) if isinstance(words, str) else words
-    return subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True,
-                          check=False, **options)
+def printed(done):
+    return re.findall(r"^  (clearway .*)$", done.stdout, re.M)
 
 
-def printed_commands(text):
-    return re.findall(r"^  (clearway .*)$", text, re.M)
+def steps_of(done):
+    return [shlex.split(command)[1] for command in printed(done)]
 
 
-def facts_of_page(page):
-    return json.loads(re.search(r'<script[^>]*id="facts"[^>]*>(.*?)</script>', page.read_text(), re.S)[1])
+def last_line(done):
+    return done.stdout.splitlines()[-1]
 
 
-def bytes_of(folder, names=FILES):
-    return {name: (folder / name).read_bytes() for name in names}
-
-
-UTM_32 = (b'PROJCS["ETRS89 / UTM zone 32N",GEOGCS["ETRS89",'
-          b'DATUM["European_Terrestrial_Reference_System_1989",'
-          b'SPHEROID["GRS 1980",6378137,298.257222101]],PRIMEM["Greenwich",0],'
-          b'UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4258"]],'
-          b'PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],'
-          b'PARAMETER["central_meridian",9],PARAMETER["scale_factor",0.9996],'
-          b'PARAMETER["false_easting",500000],PARAMETER["false_northing",0],'
-          b'UNIT["metre",1],AUTHORITY["EPSG","25832"]]\0')
-
-
-def write_utm_scan(path, points):
-    """LAS 1.4 with a reference system, and steps of 1 mm from E 500 km and N 5,316 km on."""
-    header = bytearray(375)
-    header[0:4] = b"LASF"
-    struct.pack_into("<H", header, 6, 16)
-    header[24:26] = bytes((1, 4))
-    struct.pack_into("<HII", header, 94, 375, 375 + 54 + len(UTM_32), 1)
-    struct.pack_into("<BH", header, 104, 6, 30)
-    struct.pack_into("<6d", header, 131, 1e-3, 1e-3, 1e-3, 500000, 5316000, 0)
-    for k, start in enumerate((500000, 5316000, 0)):
-        axis = [start + p[k] / 1000 for p in points]
-        struct.pack_into("<2d", header, 179 + 16 * k, max(axis), min(axis))
-    struct.pack_into("<Q", header, 247, len(points))
-    record = bytearray(54)
-    record[2:17] = b"LASF_Projection"
-    struct.pack_into("<HH", record, 18, 2112, len(UTM_32))
-    bodies = (struct.pack("<3i2xBxB13x", *p, 0x11, 1) for p in points)
-    path.write_bytes(bytes(header + record) + UTM_32 + b"".join(bodies))
-
-
-class Site(unittest.TestCase):
+class Check(Scratch):
     """A small hall whose scan is in a folder of its own, and a fresh copy of it for each test."""
 
     @classmethod
-    def setUpClass(cls):
-        cls.scratch = tempfile.TemporaryDirectory(prefix="clearway-check-")
-        cls.addClassCleanup(cls.scratch.cleanup)
-        cls.master = Path(cls.scratch.name) / "master"
-        cls.master.mkdir()
-        made = clearway("scene hall --points 20000 --model-points 500 --poses 1600 -o .", cls.master)
-        assert made.returncode == 0, made.stderr
+    def make(cls):
+        cls.master = Place(cls.place / "master")
+        cls.master.ask("scene hall --points 20000 --model-points 500 --poses 1600 -o .")
         (cls.master / "scans").mkdir()
         (cls.master / "environment.las").rename(cls.master / "scans/environment.las")
+        lines = (cls.master / "trajectory.txt").read_text().splitlines(keepends=True)
+        far = [line.split() for line in lines]
+        for name, some in (("quarter", lines[:400]), ("coarse", lines[::40]),
+                           ("jump", lines[:400] + lines[1200:]),
+                           ("far", [" ".join([*v[:3], str(float(v[3]) + 5000), *v[4:]]) + "\n" for v in far])):
+            cls.master.put(f"{name}.txt", "".join(some))
+        (cls.place / "bin").mkdir()
+        (cls.place / "bin/clearway").symlink_to(PROGRAM)
+
+    def copy(self):
+        folder = Path(tempfile.mkdtemp(dir=self.place.folder)) / "work"
+        shutil.copytree(self.master.folder, folder)
+        return Place(folder)
 
     def setUp(self):
-        self.folder = Path(tempfile.mkdtemp(dir=self.scratch.name)) / "work"
-        shutil.copytree(self.master, self.folder)
+        self.here = self.copy()
 
-    def check(self, words, exit_code=0, folder=None, **options):
-        done = clearway("check " + words, folder or self.folder, **options)
-        self.assertEqual(done.returncode, exit_code, f"{words}\n{done.stdout}\n{done.stderr}")
-        return done
+    def check(self, words, code=0, *said, **options):
+        return self.here.ask("check " + words, code, *said, **options)
 
-    def asked(self, words, exit_code=0, **options):
-        """A check of the scans with the usual question, into site/."""
-        return self.check(f"scans {QUESTION} -o site {words}", exit_code, **options)
+    def made(self, folder="site", names=FILES, place=None):
+        return (place or self.here).bytes(*(f"{folder}/{name}" for name in names))
 
-    def convert(self):
-        """Makes site/site.h5 of the scans, and nothing else."""
-        (self.folder / "site").mkdir()
-        done = clearway("convert scans -o site/site.h5", self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
+    def assert_same(self, folder, names=("result.h5", "conflicts.csv"), as_in="fresh"):
+        self.assertEqual(self.made(folder, names), self.made(as_in, names))
 
-    def paste(self, commands, folder):
-        """Runs the commands as a shell takes them apart. Every one has to succeed."""
-        links = folder / "bin"
-        links.mkdir()
-        (links / "clearway").symlink_to(PROGRAM)
+    def times(self, names=FILES):
+        return [(self.here / "site" / name).stat().st_mtime_ns for name in names]
+
+    def paste(self, commands, place):
+        """Runs printed commands as a shell takes them apart."""
+        path = f"{self.place / 'bin'}:{os.environ['PATH']}"
         for command in commands:
-            done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True,
-                                  check=False,
-                                  env={**os.environ, "PATH": f"{links}:{os.environ['PATH']}"})
+            done = subprocess.run(command, shell=True, cwd=place.folder, check=False, capture_output=True,
+                                  text=True, env={**os.environ, "PATH": path})
             self.assertEqual(done.returncode, 0, f"{command}\n{done.stderr}")
-        shutil.rmtree(links)
 
-    def pasted_elsewhere(self, commands, output="site"):
-        """The files that the commands make of the same inputs in another place."""
-        other = Path(tempfile.mkdtemp(dir=self.scratch.name)) / "elsewhere"
-        shutil.copytree(self.master, other)
-        (other / output).mkdir(parents=True)
-        self.paste(commands, other)
-        return bytes_of(other / output)
+    def check_pasted_elsewhere(self, done, output="site"):
+        """The printed commands make the same files of the same inputs in another place."""
+        other = self.copy()
+        (other / output).mkdir()
+        self.paste(printed(done), other)
+        self.assertEqual(self.made(output, place=other), self.made(output))
 
+    def vehicle(self, bodies, name="train.json"):
+        self.here.put(name, {"bodies": bodies})
 
-class Finding(Site):
+    def bend(self, name, places):
+        """A path of poses at these places, which look along the way there."""
+        ahead = [math.atan2(to[1] - at[1], to[0] - at[0]) for at, to in
+                 zip([places[0], *places], [*places[1:], places[-1]])]
+        self.here.put_path(name, [(x, y, 0, turn) for (x, y), turn in zip(places, ahead)])
+
+    # What is found, and how it is told
+
     def test_four_arguments_are_enough(self):
-        done = self.asked("--between-poses=false --seen=0")  # flags that are off
-        self.assertEqual(sorted(path.name for path in (self.folder / "site").iterdir()),
-                         sorted([*FILES, "check.json"]))
-        for words in ("run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
-                      f"{QUESTION} -o by_hand.h5",
-                      "conflicts by_hand.h5 --trajectory trajectory.txt --model model.ply "
-                      "-o by_hand.csv"):
-            by_hand = clearway(words, self.folder)
-            self.assertEqual(by_hand.returncode, 0, by_hand.stderr)
-        self.assertEqual((self.folder / "by_hand.h5").read_bytes(),
-                         (self.folder / "site/result.h5").read_bytes())
-        self.assertEqual((self.folder / "by_hand.csv").read_bytes(),
-                         (self.folder / "site/conflicts.csv").read_bytes())
-        verdict = clearway(f"run --env site/site.h5 --first-pose --clearance 0.3 --profile 0.5 "
-                           f"{QUESTION} -o again.h5", self.folder).stdout
-        without_nearest = re.sub(r"; the least distance is .*?(?=; see the)", "",
-                                 verdict.splitlines()[-1])
+        done = self.check(f"{SITE} --between-poses=false --seen=0", 0,  # flags that are off
+                          "taken by default: --clearance 0.3 (3 times the radius) and "
+                          "--profile 0.5 (5 times the radius)")
+        self.assertEqual(sorted(os.listdir(self.here / "site")), sorted([*FILES, "check.json"]))
+        run = self.here.ask(f"{BY_HAND} -o by_hand.h5")
+        conflicts = self.here.ask(f"conflicts by_hand.h5 {INPUTS} -o by_hand.csv")
+        self.assertEqual(self.here.bytes("by_hand.h5", "by_hand.csv"),
+                         self.made(names=["result.h5", "conflicts.csv"]))
         # One place is named: the worst one, and not the nearest beside it.
-        self.assertEqual(done.stdout.splitlines()[-1],
-                         f"{without_nearest} {by_hand.stdout.splitlines()[-1]}")
-        self.assertIn("taken by default: --clearance 0.3 (3 times the radius) and "
-                      "--profile 0.5 (5 times the radius)", done.stderr)
-
-    def first_quarter_of_the_path(self):
-        """quarter.txt: 20 m with some conflicts, for many questions about it."""
-        lines = (self.folder / "trajectory.txt").read_text().splitlines()
-        (self.folder / "quarter.txt").write_text("\n".join(lines[:400]) + "\n")
-
-    def coarse_path(self):
-        lines = (self.folder / "trajectory.txt").read_text().splitlines()
-        (self.folder / "coarse.txt").write_text("\n".join(lines[::40]) + "\n")
-        return lines
+        without_nearest = re.sub(r"; the least distance is .*?(?=; see the)", "", last_line(run))
+        self.assertEqual(last_line(done), f"{without_nearest} {last_line(conflicts)}")
 
     def test_a_path_with_large_steps_is_made_denser(self):
-        self.coarse_path()
-        coarse = "--model model.ply --trajectory coarse.txt --radius 0.1"
-        done = self.check(f"scans {coarse} -o site")
-        self.assertIn("site/path.txt: from one pose to the next the model moves by up to", done.stderr)
-        self.assertNotIn("What lies between two poses can be missed", done.stderr)
-        commands = printed_commands(done.stdout)
-        self.assertEqual([shlex.split(command)[1] for command in commands],
-                         ["convert", "trajectory", "run", "conflicts", "stations", "report"])
-        self.assertTrue(all("--trajectory site/path.txt" in c for c in commands[2:]), commands)
-        first = bytes_of(self.folder / "site")
-        again = json.loads(self.check(f"scans {coarse} -o site --json").stdout)
-        self.assertTrue(again["nothing_done"])
-        self.assertEqual(set(again["reused"].values()), {True})
-        self.assertEqual(bytes_of(self.folder / "site"), first)
+        asked = "scans --model model.ply --trajectory coarse.txt --radius 0.1 -o site"
+        done = self.check(asked, 0, "site/path.txt: from one pose to the next the model moves by up to",
+                          lacks=[MISSED])
+        self.assertEqual(steps_of(done), ["convert", "trajectory", "run", "conflicts", "stations", "report"])
+        self.assertTrue(all("--trajectory site/path.txt" in c for c in printed(done)[2:]))
+        first = self.made()
+        again = self.here.json(f"check {asked}")
+        self.assertTrue(again["nothing_done"] and all(again["reused"].values()), again)
+        self.assertEqual(self.made(), first)
         # The page names the path that was given, and shows the warnings that --json has.
-        facts = facts_of_page(self.folder / "site/report.html")
-        given = len((self.folder / "coarse.txt").read_text().splitlines())
-        self.assertIn(f"resample of coarse.txt: {given} given poses among ",
-                      facts["inputs"]["trajectory"]["made_by"])
+        facts = self.here.facts("site/report.html")
+        self.assertIn("resample of coarse.txt: 40 given poses among ", facts["inputs"]["trajectory"]["made_by"])
         self.assertTrue(facts["inputs"]["environment"]["scans"]["names"])
         self.assertEqual(again["warnings"], facts["warnings"])
-        # The way of reading the path is that of the file, and not of the denser one.
-        given = self.check(f"scans {coarse} --trajectory-format matrix --lever-arm 0,0,0.01 -o site --force")
-        run = next(c for c in printed_commands(given.stdout) if " run " in c)
-        self.assertNotIn("--lever-arm", run)
-        self.assertNotIn("--trajectory-format", run)
+        # How the path is read is said of the file, and not of the denser one.
+        given = self.check(f"{asked} --trajectory-format matrix --lever-arm 0,0,0.01 --force")
+        run = printed(given)[steps_of(given).index("run")]
+        self.assertNotRegex(run, "--lever-arm|--trajectory-format")
 
     def test_the_path_of_a_vehicle_is_made_denser_for_every_body(self):
-        bends = [(i, 0.02 * i * i) for i in range(12)]
-        self.bend(self.folder / "bend.txt", bends)
+        self.bend("bend.txt", [(i, 0.02 * i * i) for i in range(12)])
         bodies = [{"name": "a", "model": "model.ply"},
                   {"name": "b", "model": "model.ply", "pivots": [-2, -4]},
-                  {"name": "c", "model": "model.ply",
-                   "towed": {"by": "b", "at": -5, "pivots": [0, -3]}}]
+                  {"name": "c", "model": "model.ply", "towed": {"by": "b", "at": -5, "pivots": [0, -3]}}]
         self.vehicle(bodies)
-        words = "scans --vehicle train.json --trajectory bend.txt --radius 0.1"
-        done = self.check(f"{words} -o train")
-        self.assertNotIn("What lies between two poses can be missed", done.stderr)
-        again = next(c for c in printed_commands(done.stdout) if " resample " in c)
-        told = json.loads(clearway(shlex.split(again)[1:] + ["--json"], self.folder).stdout)
-        self.assertGreater(told["largest_motion_before"], 0.1)
-        self.assertLessEqual(told["largest_motion_after"], 0.1 * (1 + 1e-6))
-        self.assertTrue(json.loads(self.check(f"{words} -o train --json").stdout)["nothing_done"])
-        # A body that stays itself but is read from another file counts like the path.
+        words = "scans --vehicle train.json --trajectory bend.txt --radius 0.1 -o train"
+        done = self.check(words, lacks=[MISSED])
+        resample = printed(done)[steps_of(done).index("trajectory")].removeprefix("clearway ")
+        motion = self.here.json(resample)
+        self.assertGreater(motion["largest_motion_before"], 0.1)
+        self.assertLessEqual(motion["largest_motion_after"], 0.1 * (1 + 1e-6))
+        self.check(words, 0, DONE)
         self.vehicle(bodies[:2])
-        self.assertIn("answers another question", self.check(f"{words} -o train", 2).stderr)
+        self.check(words, 2, "answers another question")
+        # One with poses of its own, which belong to those of the path, leaves no room between them.
+        self.vehicle([TWO_BODIES[0], {"name": "own", "model": "model.ply", "trajectory": "bend.txt"}])
+        self.check(words.replace("-o train", "-o own"), 0, "no poses are put between",
+                   "the poses of the body own belong to those of the path")
 
-    def test_a_body_with_a_trajectory_of_its_own_keeps_the_path(self):
-        self.bend(self.folder / "bend.txt", [(i, 0) for i in range(12)])
-        self.vehicle([{"name": "a", "model": "model.ply"},
-                      {"name": "own", "model": "model.ply", "trajectory": "bend.txt"}])
-        done = self.check("scans --vehicle train.json --trajectory bend.txt --radius 0.1 -o own")
-        self.assertIn("no poses are put between", done.stderr)
-        self.assertIn("the poses of the body own belong to those of the path", done.stderr)
+    def test_a_path_with_a_jump_stays_as_it_is(self):
+        self.check("scans --model model.ply --trajectory jump.txt --radius 0.1 -o site", lacks=["resample"])
+        self.assertFalse((self.here / "site/path.txt").exists())
 
-    def vehicle(self, bodies):
-        (self.folder / "train.json").write_text(json.dumps({"bodies": bodies}))
-
-    @staticmethod
-    def bend(file, places):
-        """Poses at these places, which look along the way there."""
-        lines = []
-        for i, (x, y) in enumerate(places):
-            to = places[min(i + 1, len(places) - 1)]
-            at = places[max(i - 1, 0)]
-            length = math.dist(at, to)
-            c, s = (to[0] - at[0]) / length, (to[1] - at[1]) / length
-            lines.append(f"{c} {-s} 0 {x} {s} {c} 0 {y} 0 0 1 0\n")
-        file.write_text("".join(lines))
-
-    def test_a_limit_of_processes_is_told(self):
-        """Pools of threads that do not fit beside each other, for a user who has no other process."""
-        user = ["setpriv", "--reuid", "23456", "--regid", "23456", "--clear-groups"]
-        tried = shutil.which("setpriv") and os.geteuid() == 0 and subprocess.run(
-            [*user, PROGRAM, "--version"], capture_output=True, check=False).returncode == 0
-        if not tried:
-            self.skipTest("only root becomes a user without other processes")
-        for folder in (self.scratch.name, self.folder.parent):
-            os.chmod(folder, 0o755)
-        codes = set()
-        for limit in range(2, 14):
-            out = self.folder / "limited"
-            shutil.rmtree(out, ignore_errors=True)
-            out.mkdir(0o777)
-            os.chmod(out, 0o777)
-            done = subprocess.run(
-                [*user, "prlimit", f"--nproc={limit}", PROGRAM, "check", "scans", *shlex.split(QUESTION),
-                 "--threads", "4", "-o", "limited"],
-                cwd=self.folder, capture_output=True, text=True, check=False)
-            codes.add(done.returncode)
-            if done.returncode != 0:
-                self.assertEqual(done.returncode, 4, f"{limit}: {done.stderr}")
-                self.assertIn("threads cannot be started", done.stderr)
-        self.assertEqual(codes, {0, 4})
-
-    def near_and_whole(self, words):
-        """The output of a check of what is near the path; its tables are those of all points."""
-        near = self.check(f"{words} --near -o near")
+    def near_and_whole(self, words, *said):
+        """A check of what is near the path; its tables are those of all points."""
+        near = self.check(f"{words} --near -o near", 0, *said)
         self.check(f"{words} -o whole")
-        tables = ["conflicts.csv", "stations.csv"]
-        self.assertEqual(bytes_of(self.folder / "near", tables),
-                         bytes_of(self.folder / "whole", tables))
-        self.assertTrue(json.loads(
-            self.check(f"{words} --near --json -o near").stdout)["nothing_done"])
+        self.assert_same("near", ["conflicts.csv", "stations.csv"], "whole")
+        self.check(f"{words} --near -o near", 0, DONE)
         return near
 
-    def test_only_what_is_near_the_path(self):
-        near = self.near_and_whole(f"scans {QUESTION}")
-        self.assertIn("--near trajectory.txt --within ", near.stdout)
-        self.assertEqual(self.pasted_elsewhere(printed_commands(near.stdout), "near"),
-                         bytes_of(self.folder / "near"))
-        trusting = self.check(f"scans {QUESTION} --near --trust-bounds -o trusting")
-        self.assertIn("--trust-bounds", trusting.stdout)
+    def test_only_what_is_near_the_path_may_be_read(self):
+        near = self.near_and_whole(f"scans {QUESTION}", "--near trajectory.txt --within ")
+        self.check_pasted_elsewhere(near, "near")
+        self.check(f"scans {QUESTION} --near --trust-bounds -o trusting", 0, "--trust-bounds")
 
     def test_a_corridor_that_proves_too_narrow_is_known_the_next_time(self):
-        self.bend(self.folder / "corners.txt", [(0, 0), (30, 0), (30, 30), (60, 30), (60, 60)])
-        asked = "scans --model model.ply --trajectory corners.txt --near"
-        self.assertIn("The scans are converted once more",
-                      self.check(f"{asked} --radius 0.1 -o site").stderr)
-        self.assertIn("nothing was to be done", self.check(f"{asked} --radius 0.1 -o site").stderr)
-        self.check(f"{asked} --radius 0.3 -o site --force")
-        self.check(f"{asked} --radius 0.3 -o fresh")
-        for name in ("site.h5", "result.h5", "conflicts.csv"):
-            self.assertEqual((self.folder / "site" / name).read_bytes(),
-                             (self.folder / "fresh" / name).read_bytes(), name)
+        self.bend("corners.txt", [(0, 0), (30, 0), (30, 30), (60, 30), (60, 60)])
+        asked = "scans --model model.ply --trajectory corners.txt --near -o site"
+        self.check(f"{asked} --radius 0.1", 0, "The scans are converted once more")
+        self.check(f"{asked} --radius 0.1", 0, DONE)
+        self.check(f"{asked} --radius 0.3 --force")
+        self.check(f"{asked} --radius 0.3".replace("-o site", "-o fresh"))
+        self.assert_same("site", ["site.h5", "result.h5", "conflicts.csv"])
 
     def test_scans_in_feet_and_a_denser_path(self):
-        self.coarse_path()
-        near = self.near_and_whole("scans --model model.ply --trajectory coarse.txt --radius 3cm "
-                                   "--unit ft")
-        self.assertIn("--trajectory near/path.txt", near.stdout)
+        near = self.near_and_whole("scans --model model.ply --trajectory coarse.txt --radius 3cm --unit ft",
+                                   "--trajectory near/path.txt")
         self.assertNotIn("converted once more", near.stderr)
 
     def test_a_path_in_degrees_is_read_in_the_system_of_the_scans(self):
         draw = random.Random(1)
-        points = [(side + draw.randrange(-100, 100), draw.randrange(270000, 380000),
-                   draw.randrange(12500, 16000))
-                  for side in (-60000, -3000, 3000, 60000) for _ in range(5000)]
-        points.append((900, 320000, 13000))
-        write_utm_scan(self.folder / "utm.las", points)
-        lines = ["lat,lon,height,roll_deg,pitch_deg,heading_deg"]
-        lines += [f"{48 + i * 0.5 / 111194:.10f},9.0,12.5,0,0,0" for i in range(60)]
-        (self.folder / "degrees.csv").write_text("\n".join(lines) + "\n")
-        near = self.near_and_whole(
-            "utm.las --model box:4,1.8,1.5 --trajectory degrees.csv --radius 0.1")
-        self.assertIn("conflict: 1 point ", near.stdout)
-
-    def test_a_path_with_a_jump_stays_as_it_is(self):
-        lines = self.coarse_path()
-        (self.folder / "jump.txt").write_text("\n".join(lines[:400] + lines[1200:]) + "\n")
-        done = self.check("scans --model model.ply --trajectory jump.txt --radius 0.1 -o site")
-        self.assertFalse((self.folder / "site/path.txt").exists())
-        self.assertNotIn("resample", done.stdout)
+        points = [(side + draw.uniform(-0.1, 0.1), draw.uniform(270, 380), draw.uniform(12.5, 16), 1, False)
+                  for side in (-60, -3, 3, 60) for _ in range(5000)]
+        write_las(self.here / "utm.las", [*points, (0.9, 320, 13, 1, False)], zone("metre", 1))
+        self.here.put("degrees.csv", "lat,lon,height,roll_deg,pitch_deg,heading_deg\n" + "".join(
+            f"{48 + i * 0.5 / 111194:.10f},9.0,12.5,0,0,0\n" for i in range(60)))
+        self.near_and_whole("utm.las --model box:4,1.8,1.5 --trajectory degrees.csv --radius 0.1",
+                            "conflict: 1 point ")
 
     def test_the_printed_commands_give_the_same_bytes(self):
-        done = self.asked("")
-        commands = printed_commands(done.stdout)
-        self.assertEqual([shlex.split(command)[1] for command in commands],
-                         ["convert", "run", "conflicts", "stations", "report"])
-        made = bytes_of(self.folder / "site")
-        self.assertEqual(self.pasted_elsewhere(commands), made)
-        self.paste(commands, self.folder)  # where everything is there already
-        self.assertEqual(bytes_of(self.folder / "site"), made)
+        done = self.check(SITE)
+        self.assertEqual(steps_of(done), ["convert", "run", "conflicts", "stations", "report"])
+        self.check_pasted_elsewhere(done)
+        made = self.made()
+        self.paste(printed(done), self.here)  # where everything is there already
+        self.assertEqual(self.made(), made)
 
     def test_names_that_a_shell_would_take_apart(self):
-        (self.folder / "it's a car.ply").write_bytes((self.folder / "model.ply").read_bytes())
-        shutil.copy(self.folder / "it's a car.ply", self.master)
-        self.addCleanup((self.master / "it's a car.ply").unlink)
-        output = "the $HOME; site"
-        done = clearway(["check", "scans", "--model", "it's a car.ply", "--trajectory",
-                         "trajectory.txt", "--radius", "10", "cm", "--floor", "-0.5",
-                         "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
-                         "--ignore-box=1,2,3,4,5,6", "-o", output], self.folder)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("--clearance 30cm (", done.stderr)
-        self.assertIn("--profile 50cm (", done.stderr)
-        made = bytes_of(self.folder / output)
-        self.assertEqual(self.pasted_elsewhere(printed_commands(done.stdout), output), made)
+        car, output = "it's a car.ply", "the $HOME; site"
+        shutil.copy(self.here / "model.ply", self.master / car)
+        self.addCleanup((self.master / car).unlink)
+        self.here = self.copy()
+        done = self.here.ask(
+            ["check", "scans", "--model", car, "--trajectory", "trajectory.txt", "--radius", "10", "cm",
+             "--floor", "-0.5", "--title", 'A "site" & more', "--ignore-box", "-1,-2.5,-3,-0.5,9,9",
+             "--ignore-box=1,2,3,4,5,6", "-o", output], 0, "--clearance 30cm (", "--profile 50cm (")
+        self.check_pasted_elsewhere(done, output)
+
+    def test_the_commands_of_other_questions_give_the_same_bytes(self):
+        self.vehicle(TWO_BODIES, "wagon.json")
+        self.vehicle([TWO_BODIES[0], {"name": "rear", "model": "model.ply",
+                                      "towed": {"by": "front", "at": -2.4, "pivots": [2.4, -1]}}], "towed.json")
+        scans = self.check(f"{SITE} --origins origins.csv")
+        self.assertIn("--origins origins.csv", printed(scans)[0])
+        for words in ("--vehicle wagon.json", "--vehicle towed.json", "--model model.ply --between-poses",
+                      "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
+                      "--model model.ply --forward=-x",
+                      "--model model.ply --seen",
+                      "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
+            with self.subTest(words):
+                done = self.check(f"site/site.h5 --trajectory quarter.txt --radius 0.1 {words} -o other --force")
+                self.assertEqual("--gap" in printed(done)[0], "--error" in words)
+                self.assertEqual("--clearance" in printed(done)[0], "--between-poses" not in words)
+                self.assertEqual("--seen" in printed(done)[0], "--seen" in words)
+                made = self.made("other", FILES[1:])
+                self.paste(printed(done), self.here)
+                self.assertEqual(self.made("other", FILES[1:]), made)
 
     def test_json(self):
-        done = self.asked("--json")
-        answer = json.loads(done.stdout)
-        self.assertEqual(answer["verdict"], "conflict")
-        self.assertEqual(answer["run"]["verdict"], "conflict")
-        self.assertEqual(len(answer["commands"]), 5)
-        self.assertFalse(answer["nothing_done"])
-        self.assertEqual(answer["files"]["result"], "site/result.h5")
-        self.assertEqual(list(answer["seconds"]),
-                         ["convert", "path", "run", "conflicts", "stations", "report"])
+        answer, again = (self.here.json(f"check {SITE}") for _ in range(2))
+        self.assertEqual([answer["verdict"], answer["run"]["verdict"], answer["files"]["result"]],
+                         ["conflict", "conflict", "site/result.h5"])
+        self.assertEqual(list(answer["seconds"]), ["convert", "path", "run", "conflicts", "stations", "report"])
         self.assertGreater(min(answer["seconds"][step] for step in ("convert", "run", "report")), 0)
-        again = json.loads(self.asked("--json").stdout)
-        self.assertTrue(again["nothing_done"])
+        self.assertEqual([answer["nothing_done"], again["nothing_done"]], [False, True])
+        self.assertEqual(len(answer["commands"]), 5)
         self.assertEqual(again["commands"], answer["commands"])
         self.assertEqual(set(again["reused"].values()), {True})
 
     def test_exit_codes_are_those_of_run(self):
-        self.asked("", 0)
-        self.asked("--fail-on-collision", 1)
-        clear = self.check("scans --model box:0.2,0.2,0.2 --model-as points --trajectory "
-                           "trajectory.txt --radius 0.01 -o clear --fail-on-collision")
-        self.assertIn("clear", clear.stdout.splitlines()[-1])
-        lines = (self.folder / "trajectory.txt").read_text().splitlines()
-        far = []
-        for line in lines:
-            values = line.split()
-            values[3] = str(float(values[3]) + 5000)
-            far.append(" ".join(values))
-        (self.folder / "far.txt").write_text("\n".join(far) + "\n")
-        undecided = self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far "
-                               "--fail-on-collision", 6)
-        self.assertIn("undecided", undecided.stdout.splitlines()[-1])
+        self.check(SITE)
+        self.check(f"{SITE} --fail-on-collision", 1)
+        clear = self.check("scans --model box:0.2,0.2,0.2 --model-as points --trajectory trajectory.txt "
+                           "--radius 0.01 -o clear --fail-on-collision")
+        self.assertIn("clear", last_line(clear))
+        far = "scans --model model.ply --trajectory far.txt --radius 0.1 -o far"
+        undecided = self.check(f"{far} --fail-on-collision", 6, "nothing was scanned")
+        self.assertIn("undecided", last_line(undecided))
         self.assertEqual(undecided.stderr.count("its verdict is undecided"), 1)
-        self.assertIn("nothing was scanned", undecided.stderr + undecided.stdout)
-        self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far", 0)
-        self.check("scans --model model.ply --trajectory far.txt --radius 0.1 -o far --strict", 3)
+        self.check(far)
+        self.check(f"{far} --strict", 3)
 
     def test_a_ledger_is_on_the_page_and_decides_about_success(self):
-        def ledger_of_page():
-            page = (self.folder / "site/report.html").read_text()
-            return json.loads(re.search(r'id="facts"[^>]*>(.*?)</script>', page, re.S).group(1))["ledger"]
-
-        words = f"scans {QUESTION} -o site --min-points 1 --ledger known.csv --date 2026-03-01 --fail-on-collision"
-        self.check(words + " --update", exit_code=1)
-        found = ledger_of_page()
+        words = f"{SITE} --min-points 1 --ledger known.csv --date 2026-03-01 --fail-on-collision"
+        self.check(f"{words} --update", 1)
+        found = self.here.facts("site/report.html")["ledger"]
         self.assertEqual([found["name"], found["date"], found["new"]],
                          ["known.csv", "2026-03-01", len(found["conflicts"])])
-        table = self.folder / "known.csv"
-        table.write_text(table.read_text().replace(",new,", ",accepted,"))
-        done = self.check(words, exit_code=0)
-        self.assertIn("The verdict stays conflict. The ledger accepts all", done.stdout)
-        self.assertEqual(ledger_of_page()["accepted"], found["new"])
+        self.here.put("known.csv", (self.here / "known.csv").read_text().replace(",new,", ",accepted,"))
+        self.check(words, 0, "The verdict stays conflict. The ledger accepts all")
+        self.assertEqual(self.here.facts("site/report.html")["ledger"]["accepted"], found["new"])
 
-    def test_inputs_of_all_kinds(self):
-        whole = self.asked("")
-        verdict = whole.stdout.splitlines()[-1]
-        single = self.check(f"scans/environment.las {QUESTION} -o single")
-        self.assertEqual(single.stdout.splitlines()[-1], verdict)
-        self.assertEqual((self.folder / "single/result.h5").read_bytes(),
-                         (self.folder / "site/result.h5").read_bytes())
-        store = self.check(f"site/site.h5 {QUESTION} -o of_store")
-        self.assertEqual(store.stdout.splitlines()[-1], verdict)
-        self.assertEqual([shlex.split(c)[1] for c in printed_commands(store.stdout)],
-                         ["run", "conflicts", "stations", "report"])
-        self.assertFalse((self.folder / "of_store/site.h5").exists())
-        self.assertEqual((self.folder / "of_store/result.h5").read_bytes(),
-                         (self.folder / "site/result.h5").read_bytes())
-        (self.folder / "scans/post.ply").write_text(
-            "ply\nformat ascii 1.0\nelement vertex 2\nproperty double x\nproperty double y\n"
-            "property double z\nend_header\n1 2 1\n1 2 1.1\n")
+    def test_scans_are_files_folders_or_a_store(self):
+        verdict = last_line(self.check(SITE))
+        for scans, steps in (("scans/environment.las", ["convert"]), ("site/site.h5", [])):
+            done = self.check(f"{scans} {QUESTION} -o {'scan' if steps else 'store'}")
+            self.assertEqual(last_line(done), verdict)
+            self.assertEqual(steps_of(done), [*steps, "run", "conflicts", "stations", "report"])
+        self.assert_same("scan", ["result.h5"], "site")
+        self.assert_same("store", ["result.h5"], "site")
+        self.assertFalse((self.here / "store/site.h5").exists())
+        self.here.put("scans/post.xyz", "1 2 1\n1 2 1.1\n")
         self.check(f"scans {QUESTION} -o mixed")
-        info = json.loads(clearway("info mixed/site.h5 --json", self.folder).stdout)
-        self.assertEqual({source["name"] for source in info["sources"]},
-                         {"environment.las", "post.ply"})
-        self.assertEqual(info["points"], 20002)
+        info = self.here.json("info mixed/site.h5")
+        self.assertEqual([{source["name"] for source in info["sources"]}, info["points"]],
+                         [{"environment.las", "post.xyz"}, 20002])
 
     def test_the_vehicle_may_lie_among_the_scans(self):
-        whole = self.asked("")
+        verdict = last_line(self.check(SITE))
         for name in ("model.ply", "trajectory.txt"):
-            shutil.copy(self.folder / name, self.folder / "scans")
+            shutil.copy(self.here / name, self.here / "scans")
         words = "--model scans/model.ply --trajectory scans/trajectory.txt --radius 0.1"
         for number, scans in enumerate(("scans", "scans/environment.las scans/model.ply")):
-            mixed = self.check(f"{scans} {words} -o mixed{number}")
-            self.assertIn("scans/model.ply: belongs to the vehicle, so it is not taken as a scan",
-                          mixed.stderr)
-            self.assertEqual(mixed.stdout.splitlines()[-1], whole.stdout.splitlines()[-1])
-            commands = printed_commands(mixed.stdout)
-            self.assertIn("clearway convert scans/environment.las -o", commands[0])
-        self.check("scans/model.ply --model scans/model.ply --trajectory trajectory.txt "
-                   "--radius 0.1 -o none", 2)
-        (self.folder / "scans/wagon.json").write_text(json.dumps(
-            {"bodies": [{"name": "front", "model": "model.ply"},
-                        {"name": "rear", "model": "model.ply", "at": -4}]}))
-        wagon = self.check("scans --vehicle scans/wagon.json --trajectory trajectory.txt "
-                           "--radius 0.1 -o wagon")
-        self.assertIn("scans/model.ply: belongs to the vehicle", wagon.stderr)
+            mixed = self.check(f"{scans} {words} -o mixed{number}", 0,
+                               "scans/model.ply: belongs to the vehicle, so it is not taken as a scan")
+            self.assertEqual(last_line(mixed), verdict)
+            self.assertIn("clearway convert scans/environment.las -o", printed(mixed)[0])
+        self.check(f"scans/model.ply {words} -o none", 2)
+        self.vehicle(TWO_BODIES, "scans/wagon.json")
+        self.check("scans --vehicle scans/wagon.json --trajectory trajectory.txt --radius 0.1 -o wagon", 0,
+                   "scans/model.ply: belongs to the vehicle")
 
-    def test_other_questions(self):
-        wagon = {"bodies": [{"name": "front", "model": "model.ply"},
-                            {"name": "rear", "model": "model.ply", "at": -4}]}
-        (self.folder / "wagon.json").write_text(json.dumps(wagon))
-        wagon["bodies"][1] = {"name": "rear", "model": "model.ply",
-                              "towed": {"by": "front", "at": -2.4, "pivots": [2.4, -1]}}
-        (self.folder / "towed.json").write_text(json.dumps(wagon))
-        self.first_quarter_of_the_path()
-        self.convert()
-        for words in ("--vehicle wagon.json", "--vehicle towed.json", "--model model.ply --between-poses",
-                      "--model model.ply --error-scan 0.005 --error-model 0.01 --gap 0.2",
-                      "--model model.ply --forward=-x",
-                      "--model model.ply --clearance 0.2 --min-points 3 --split 0"):
-            with self.subTest(words):
-                done = self.check("site/site.h5 --trajectory quarter.txt --radius 0.1 "
-                                  f"{words} -o other --force")
-                commands = printed_commands(done.stdout)
-                self.assertEqual("--gap" in commands[0], "--error" in words)
-                self.assertEqual("--clearance" in commands[0], "--between-poses" not in words)
-                made = bytes_of(self.folder / "other", FILES[1:])
-                self.paste(commands, self.folder)
-                self.assertEqual(bytes_of(self.folder / "other", FILES[1:]), made)
-
-    def test_every_kind_of_model(self):
-        """Meshes of all formats, points, boxes, outlines, and vehicles of them, in another folder."""
-        here = self.folder / "vehicles"
-        here.mkdir()
-        shutil.copy(self.folder / "model.ply", here / "points.ply")
-        clearway("model box 2,1,1 -o vehicles/mesh.off", self.folder)
-        corners, faces = [], []
-        for line in (here / "mesh.off").read_text().splitlines()[1:]:
-            values = line.split("#")[0].split()
-            if len(values) == 4 and values[0] == "3":
-                faces.append([int(v) for v in values[1:]])
-            elif len(values) == 3 and (corners or "." in line or not faces and values[1] != "12"):
-                corners.append(values)
-        (here / "mesh.obj").write_text(
-            "".join(f"v {' '.join(c)}\n" for c in corners) +
-            "".join(f"f {' '.join(str(i + 1) for i in f)}\n" for f in faces))
-        (here / "mesh.ply").write_text(
-            f"ply\nformat ascii 1.0\nelement vertex {len(corners)}\nproperty double x\n"
-            f"property double y\nproperty double z\nelement face {len(faces)}\n"
-            "property list uchar int vertex_indices\nend_header\n" +
-            "".join(f"{' '.join(c)}\n" for c in corners) +
-            "".join(f"3 {' '.join(map(str, f))}\n" for f in faces))
-        (here / "mesh.stl").write_text("solid a\n" + "".join(
-            "facet normal 0 0 0\nouter loop\n" +
-            "".join(f"vertex {' '.join(corners[i])}\n" for i in f) + "endloop\nendfacet\n"
-            for f in faces) + "endsolid a\n")
-        (here / "points.txt").write_text("".join(f"{' '.join(c)}\n" for c in corners))
-        (here / "gauge.csv").write_text("-1,0\n1,0\n1,2\n-1,2\n")
-        made = clearway("model outline vehicles/gauge.csv --x=-1,1 -o vehicles/outline.off",
-                        self.folder)
-        self.assertEqual(made.returncode, 0, made.stderr)
-        models = ["mesh.off", "mesh.obj", "mesh.ply", "mesh.stl", "outline.off", "points.ply",
-                  "points.txt", "box:2,1,1"]
-        self.assertEqual((len(corners), len(faces)), (8, 12))
-        self.first_quarter_of_the_path()
-        self.convert()
+    def test_models_of_every_kind_alone_and_as_bodies(self):
+        """A mesh, points, an outline and a box, which a vehicle's file names beside itself."""
+        here = self.here
+        here.put("vehicles/gauge.csv", "-1,0\n1,0\n1,2\n-1,2\n")
+        here.ask("model box 2,1,1 -o vehicles/mesh.off")
+        here.ask("model outline vehicles/gauge.csv --x=-1,1 -o vehicles/outline.off")
+        shutil.copy(here / "model.ply", here / "vehicles/points.ply")
+        models = ["mesh.off", "outline.off", "points.ply", "box:2,1,1"]
+        self.check(SITE)
         site = "site/site.h5 --trajectory quarter.txt --radius 0.1 --force -o"
-        sentences = {}
+        counts = {}
         for model in models:
-            path = model if model.startswith("box:") else f"vehicles/{model}"
             with self.subTest(model):
-                one = self.check(f"{site} one --model {path}")
-                sentences[model] = one.stdout.splitlines()[-1]
-                self.assertIn("nothing was to be done",
-                              self.check(f"{site} one --model {path}").stderr)
-                (here / "one.json").write_text(json.dumps(
-                    {"bodies": [{"name": "only", "model": model}]}))
-                vehicle = self.check(f"{site} vehicle --vehicle vehicles/one.json")
-                self.assertEqual(json.loads(clearway("info vehicle/result.h5 --json", self.folder)
-                                            .stdout)["colliding_points"],
-                                 json.loads(clearway("info one/result.h5 --json", self.folder)
-                                            .stdout)["colliding_points"])
-                self.assertIn("nothing was to be done",
-                              self.check(f"{site} vehicle --vehicle vehicles/one.json").stderr)
-                self.assertEqual(vehicle.stdout.splitlines()[-1].split(" ")[:2],
-                                 sentences[model].split(" ")[:2])
-        mesh = {sentences[name] for name in ("mesh.off", "mesh.obj", "mesh.ply", "mesh.stl",
-                                             "box:2,1,1")}
-        self.assertEqual(len(mesh), 1, sentences)
-        bodies = [{"name": f"body {i}", "model": model, "at": -2.0 * i}
-                  for i, model in enumerate(models)]
-        bodies[1] = {**bodies[1], "pivots": [1, -1]}
-        del bodies[1]["at"]
-        (here / "all.json").write_text(json.dumps({"bodies": bodies}))
-        for model_as in ("", " --model-as points --model-spacing 0.1"):
-            done = self.check(f"{site} all --vehicle vehicles/all.json{model_as}")
-            self.assertEqual(sum("the body has no pose there" in line
-                                 for line in done.stderr.splitlines()), len(models) - 1, done.stderr)
-        (here / "all.json").write_text(json.dumps({"bodies": [{"name": "a", "model": "box:2,1"}]}))
-        refused = self.check(f"{site} all --vehicle vehicles/all.json", 2)
-        self.assertIn("expected a box as box:LENGTH,WIDTH,HEIGHT", refused.stderr)
+                self.vehicle([{"name": "only", "model": model}], "vehicles/one.json")
+                path = model if model.startswith("box:") else f"vehicles/{model}"
+                for words in (f"one --model {path}", "vehicle --vehicle vehicles/one.json"):
+                    self.check(f"{site} {words}")
+                    self.check(f"{site} {words}", 0, DONE)
+                one, vehicle = (here.json(f"info {name}/result.h5") for name in ("one", "vehicle"))
+                counts[model] = one["colliding_points"]
+                self.assertEqual([vehicle["colliding_points"], vehicle["verdict"]],
+                                 [one["colliding_points"], one["verdict"]])
+        self.assertEqual(counts["mesh.off"], counts["box:2,1,1"])
+        self.vehicle([{"name": "first", "model": models[0], "pivots": [1, -1]}] +
+                     [{"name": f"body {i}", "model": models[i], "at": -2.0 * i} for i in (1, 2, 3)],
+                     "vehicles/all.json")
+        for model_as in ("", "--model-as points --model-spacing 0.1"):
+            done = self.check(f"{site} all --vehicle vehicles/all.json {model_as}")
+            self.assertEqual(done.stderr.count("the body has no pose there"), 4, done.stderr)
+        self.vehicle([{"name": "a", "model": "box:2,1"}], "vehicles/all.json")
+        self.check(f"{site} all --vehicle vehicles/all.json", 2, "expected a box as box:LENGTH,WIDTH,HEIGHT")
 
-    def test_seen_space(self):
-        seen = self.check(f"scans {QUESTION} --origins origins.csv --seen -o seen")
-        self.assertIn("--seen", printed_commands(seen.stdout)[1])
-        self.assertIn("--origins origins.csv", printed_commands(seen.stdout)[0])
+    # The same command again. check_pairs.py draws other options and inputs in one folder.
 
-
-class Again(Site):
     def test_the_second_run_has_nothing_to_do(self):
-        first = self.asked("")
-        before = {name: (self.folder / "site" / name).stat().st_mtime_ns for name in FILES}
-        second = self.asked("")
-        self.assertIn("nothing was to be done", second.stderr)
-        self.assertEqual(second.stdout, first.stdout)
-        after = {name: (self.folder / "site" / name).stat().st_mtime_ns for name in FILES}
-        self.assertEqual(before, after)
-        self.assertIn("nothing was to be done", self.asked("--threads 1 --memory 1G").stderr)
-        (self.folder / "site/check.json").write_text("[[[")
-        self.assertNotIn("nothing was to be done", self.asked("").stderr)
-        self.assertIn("nothing was to be done", self.asked("").stderr)
+        first, before = self.check(SITE), self.times()
+        self.assertEqual(self.check(SITE, 0, DONE).stdout, first.stdout)
+        self.assertEqual(self.times(), before)
+        self.check(f"{SITE} --threads 1 --memory 1G", 0, DONE)
+        self.here.put("site/check.json", "[[[")
+        self.check(SITE, lacks=[DONE])
+        self.check(SITE, 0, DONE)
 
     def test_what_is_missing_or_changed_is_made_again(self):
-        self.asked("")
-        made = bytes_of(self.folder / "site")
-        (self.folder / "site/conflicts.csv").write_text("changed\n")
-        (self.folder / "site/report.html").unlink()
-        self.asked("")
-        now = bytes_of(self.folder / "site")
-        for name in ("site.h5", "result.h5", "conflicts.csv"):
-            self.assertEqual(now[name], made[name])
-        before = (self.folder / "site/conflicts.csv").stat().st_mtime_ns
-        self.asked("--title Other")
-        self.assertIn(b"Other", (self.folder / "site/report.html").read_bytes())
-        self.assertEqual(before, (self.folder / "site/conflicts.csv").stat().st_mtime_ns)
+        self.check(SITE)
+        made = self.made(names=FILES[:3])
+        self.here.put("site/conflicts.csv", "changed\n")
+        (self.here / "site/report.html").unlink()
+        self.check(SITE)
+        self.assertEqual(self.made(names=FILES[:3]), made)
+        before = self.times(["conflicts.csv"])
+        self.check(f"{SITE} --title Other")
+        self.assertEqual(self.here.facts("site/report.html")["title"], "Other")
+        self.assertEqual(self.times(["conflicts.csv"]), before)
 
     def test_another_question_needs_force_and_uses_the_store_again(self):
-        self.asked("")
-        made = bytes_of(self.folder / "site")
-        other = QUESTION.replace("0.1", "0.2")
-        refused = self.check(f"scans {other} -o site", 2)
-        self.assertIn("answers another question than this run: radius: 0.1 in the file",
-                      refused.stderr.replace(" m ", " "))
-        self.assertIn("--force answers this question in its place", refused.stderr)
-        self.assertNotIn("--resume", refused.stderr)
-        self.assertEqual(bytes_of(self.folder / "site"), made)
-        store = (self.folder / "site/site.h5").stat().st_mtime_ns
-        forced = self.check(f"scans {other} -o site --force")
-        self.assertEqual((self.folder / "site/site.h5").stat().st_mtime_ns, store)
-        self.assertIn("is the store of these inputs already", forced.stderr)
-        self.check(f"scans {other} -o fresh")
-        for name in ("result.h5", "conflicts.csv"):
-            self.assertEqual((self.folder / "site" / name).read_bytes(),
-                             (self.folder / "fresh" / name).read_bytes())
-        self.assertNotEqual((self.folder / "site/result.h5").read_bytes(), made["result.h5"])
-        self.assertIn("nothing was to be done", self.check(f"scans {other} -o site").stderr)
-        self.assertIn("nothing was to be done",
-                      self.check(f"scans {other} -o site --force").stderr)
+        self.check(SITE)
+        made, store = self.made(), self.times(["site.h5"])
+        other = SITE.replace("0.1", "0.2")
+        self.check(other, 2, "answers another question than this run: radius: 0.1 m in the file",
+                   "--force answers this question in its place", lacks=["--resume"])
+        self.assertEqual(self.made(), made)
+        self.check(f"{other} --force", 0, "is the store of these inputs already")
+        self.assertEqual(self.times(["site.h5"]), store)
+        self.check(other.replace("-o site", "-o fresh"))
+        self.assert_same("site")
+        self.assertNotEqual(self.made(names=["result.h5"]), made[1:2])
+        for more in ("", " --force"):
+            self.check(other + more, 0, DONE)
 
     def test_other_scans_need_force(self):
-        self.asked("")
-        (self.folder / "scans/post.xyz").write_text("1 2 1\n1 2 1.1\n")
-        refused = self.asked("", 2)
-        self.assertIn("site/site.h5: holds other scans than these", refused.stderr)
-        self.assertIn("--force", refused.stderr)
-        forced = self.asked("--force")
-        fresh = self.check(f"scans {QUESTION} -o fresh")
-        self.assertEqual(fresh.stdout.splitlines()[-1], forced.stdout.splitlines()[-1])
-        self.assertEqual((self.folder / "site/site.h5").read_bytes(),
-                         (self.folder / "fresh/site.h5").read_bytes())
-        self.assertIn("was converted with other options: its cell_points is 65536, expected 1000",
-                      self.asked("--cell-points 1000", 2).stderr)
+        self.check(SITE)
+        self.here.put("scans/post.xyz", "1 2 1\n1 2 1.1\n")
+        self.check(SITE, 2, "site/site.h5: holds other scans than these", "--force")
+        forced = self.check(f"{SITE} --force")
+        self.assertEqual(last_line(self.check(f"scans {QUESTION} -o fresh")), last_line(forced))
+        self.assert_same("site", ["site.h5"])
+        self.check(f"{SITE} --cell-points 1000", 2,
+                   "was converted with other options: its cell_points is 65536, expected 1000")
 
     def test_files_that_no_check_made_are_kept(self):
-        (self.folder / "site").mkdir()
-        (self.folder / "site/report.html").write_text("mine")
-        refused = self.asked("", 2)
-        self.assertIn("site/report.html: exists already, and no check has made it", refused.stderr)
-        self.assertEqual((self.folder / "site/report.html").read_text(), "mine")
-        self.asked("--force")
-        self.assertNotEqual((self.folder / "site/report.html").read_text(), "mine")
+        self.here.put("site/report.html", "mine")
+        self.check(SITE, 2, "site/report.html: exists already, and no check has made it")
+        self.assertEqual(self.made(names=["report.html"]), [b"mine"])
+        self.check(f"{SITE} --force")
+        self.assertNotEqual(self.made(names=["report.html"]), [b"mine"])
 
     def test_what_was_made_by_hand_is_used(self):
-        (self.folder / "site").mkdir()
-        clearway("convert scans -o site/site.h5", self.folder)
-        clearway(f"run --env site/site.h5 {QUESTION} --first-pose --clearance 0.3 --profile 0.5 "
-                 "-o site/result.h5", self.folder)
-        before = [(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]]
-        done = self.asked("")
-        self.assertIn("is the finished result of this query already", done.stderr)
-        self.assertEqual([(self.folder / "site" / name).stat().st_mtime_ns for name in FILES[:2]],
-                         before)
-
-    def test_columns_are_remembered(self):
-        (self.folder / "wide.txt").write_text(
-            "".join(f"{i % 7} {i * 0.01} {i % 3} 1.5\n" for i in range(300)))
-        words = f"wide.txt --columns 2,3,4 {QUESTION} -o wide"
-        self.check(words)
-        self.assertIn("nothing was to be done", self.check(words).stderr)
-        for other in (words.replace("2,3,4", "3,2,4"), words.replace("--columns 2,3,4", "")):
-            self.assertIn("was converted with other options: its columns is 2,3,4",
-                          self.check(other, 2).stderr)
-            self.check(other + " --force")
-            self.check(words + " --force")
-
-    def test_other_origins_make_the_seen_space_anew(self):
-        origins = self.folder / "origins.csv"
-        words = f"scans {QUESTION} --origins origins.csv --seen -o"
-        origins.write_text("first,x,y,z\n0,1,2,3\n")
-        self.check(f"{words} site")
-        origins.write_text("first,x,y,z\n0,4,2,3\n")
-        self.check(f"{words} site --force")
-        self.check(f"{words} fresh")
-        self.assertEqual(bytes_of(self.folder / "site", ["result.h5"]),
-                         bytes_of(self.folder / "fresh", ["result.h5"]))
-
-    def test_a_store_in_another_unit_makes_the_result_anew(self):
-        run = f"run --env s.h5 {QUESTION} --first-pose -o r.h5 --resume"
-        def result(unit):
-            for words in (f"convert cloud.xyz --unit {unit} -o s.h5 --force", run):
-                done = clearway(words, self.folder)
-                self.assertEqual(done.returncode, 0, done.stderr)
-            return (self.folder / "r.h5").read_bytes()
-        (self.folder / "cloud.xyz").write_text("".join(f"{i * 0.01} 0 {i % 9}\n" for i in range(300)))
-        metres = result("m")
-        self.assertNotEqual(result("ift"), metres)
-        self.assertIn("is the finished result", clearway(run, self.folder).stderr)
-        self.assertEqual(result("m"), metres)
-
-    def test_a_folder_of_poses(self):
-        poses = self.folder / "poses"
-        poses.mkdir()
-        for i in range(4):
-            (poses / f"scan{i:03}.pose").write_text(f"0 0 {100 * i}\n0 0 0\n")
-        words = "scans --model model.ply --trajectory poses --radius 0.1 -o site"
-        self.check(words)
-        self.assertIn("nothing was to be done", self.check(words).stderr)
-        (poses / "scan003.pose").write_text("50 0 300\n0 0 0\n")
-        self.assertIn("answers another question", self.check(words, 2).stderr)
-        self.check(words + " --force")
-        found = bytes_of(self.folder / "site", ["path.txt", "conflicts.csv", "stations.csv"])
-        self.check(words.replace("-o site", "-o fresh"))
-        self.assertEqual(bytes_of(self.folder / "fresh", list(found)), found)
+        (self.here / "site").mkdir()
+        self.here.ask("convert scans -o site/site.h5")
+        self.here.ask(f"{BY_HAND} -o site/result.h5")
+        before = self.times(FILES[:2])
+        self.check(SITE, 0, "is the finished result of this query already")
+        self.assertEqual(self.times(FILES[:2]), before)
 
     def test_a_killed_check_goes_on(self):
-        whole = self.asked("")
-        made = bytes_of(self.folder / "site", FILES[:-1])
-        seconds = time.monotonic()
-        self.check(f"scans {QUESTION} -o timed")
-        seconds = time.monotonic() - seconds
-        chance = random.Random(5)
+        """It is stopped when its folder has grown by a random part."""
+        def size():
+            return sum(file.stat().st_size for file in (self.here / "site").glob("*"))
+        whole = self.check(SITE)
+        made, most, draw = self.made(names=FILES[:-1]), size(), random.Random(5)
         for attempt in range(6):
-            shutil.rmtree(self.folder / "site")
-            how = signal.SIGKILL if attempt % 2 else signal.SIGTERM
-            with subprocess.Popen([PROGRAM, *shlex.split(f"check scans {QUESTION} -o site")],
-                                  cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                  text=True) as process:
-                time.sleep(chance.uniform(0.05, 0.9) * seconds)
-                process.send_signal(how)
-                error = process.communicate()[1]
-            if how == signal.SIGTERM and process.returncode != 0:
-                self.assertIn(process.returncode, (5, -signal.SIGTERM), error)
-                if process.returncode == 5:
-                    self.assertIn("the same command goes on", error)
-            done = self.asked("")
-            self.assertEqual(bytes_of(self.folder / "site", FILES[:-1]), made)
-            self.assertEqual(done.stdout.splitlines()[-1], whole.stdout.splitlines()[-1])
-            self.assertEqual(list((self.folder / "site").glob("*.journal")), [])
+            shutil.rmtree(self.here / "site")
+            (self.here / "site").mkdir()
+            least, how = draw.random() * most, signal.SIGKILL if attempt % 2 else signal.SIGTERM
+            process = self.here.start("check " + SITE)
+            try:
+                while process.poll() is None and size() < least:
+                    time.sleep(0.001)
+            except FileNotFoundError:  # a file that has got its name
+                pass
+            process.send_signal(how)
+            said = process.communicate()[0]
+            if process.returncode == 5:
+                self.assertIn("the same command goes on", said)
+            else:
+                self.assertIn(process.returncode, (0, -how), said)
+            self.assertEqual(last_line(self.check(SITE)), last_line(whole))
+            self.assertEqual(self.made(names=FILES[:-1]), made)
+            self.assertEqual(list((self.here / "site").glob("*.journal")), [])
 
+    # Mistakes
 
-class Mistakes(Site):
-    def refused(self, words, exit_code, *said):
-        done = self.check(words, exit_code)
+    def refused(self, words, code, *said):
+        done = self.check(words, code, *said, lacks=["--resume", "--env", "unknown option", "internal"])
         self.assertEqual(done.stdout, "")
-        for text in said:
-            self.assertIn(text, done.stderr)
-        for alien in ("--resume", "--env", "unknown option", "internal"):
-            self.assertNotIn(alien, done.stderr)
-        return done
 
-    def test_scans(self):
-        (self.folder / "empty").mkdir()
-        self.refused(f"empty {QUESTION} -o out", 3, "empty: holds no point file")
-        self.refused(f"nowhere {QUESTION} -o out", 4, "nowhere")
-        (self.folder / "scans/broken.las").write_bytes(b"LASF" + b"\0" * 500)
+    def test_mistakes_in_the_inputs_are_named_with_what_helps(self):
+        here = self.here
+        self.check(SITE)
+        (here / "empty").mkdir()
+        here.put("broken.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n")
+        here.put("file", "")
+        path, pipe = "--trajectory trajectory.txt --radius 0.1", "/dev/null: is a pipe or device"
+        for words, code, *said in (
+                (f"empty {QUESTION}", 3, "empty: holds no point file"),
+                (f"nowhere {QUESTION}", 4, "nowhere"),
+                (f"trajectory.txt {QUESTION}", 3, "trajectory.txt: is a trajectory", "--trajectory takes it"),
+                (f"- {QUESTION}", 2, "expected scans in files or folders"),
+                (f"site/site.h5 scans {QUESTION}", 2, "is a store", "give it alone"),
+                (f"site/result.h5 {QUESTION}", 3, "site/result.h5: is a result", "not a scan or a store"),
+                ("scans --model trajectory.txt --trajectory model.ply --radius 0.1", 3,
+                 "trajectory.txt: is a trajectory", "--trajectory takes it"),
+                ("scans --model model.ply --trajectory model.ply --radius 0.1", 3, "model.ply: is",
+                 "not a trajectory", "--model takes the vehicle"),
+                (f"scans --model none.ply {path}", 4, "none.ply"),
+                ("scans --model model.ply --trajectory /dev/null --radius 0.1", 2, pipe, "Write it into a file"),
+                (f"scans --model /dev/null {path}", 2, pipe, "Write it into a file first"),
+                (f"scans {path}", 2, "--model"),
+                (f"scans --model site/site.h5 {path}", 3, "not a model", "inputs that come first"),
+                (f"scans {INPUTS}", 2, "--radius"),
+                (f"scans {INPUTS} --radius wide", 2, "--radius", "wide"),
+                (f"scans {QUESTION} --forward z", 2, "same axis"),
+                (f"scans {QUESTION} --engine fast", 2, "--engine"),
+                (f"scans {QUESTION} --between-poses --clearance 0.3", 2, "clearance"),
+                (f"scans {QUESTION} --vehicle wagon.json", 2, "--vehicle", "--model")):
+            with self.subTest(words):
+                self.refused(f"{words} -o out", code, *said)
+        self.assertFalse((here / "out/site.h5").exists())
+        self.refused(f"scans --model broken.obj {path} -o early", 3, "broken.obj: line 3: a face names vertex 9")
+        self.assertEqual(os.listdir(here / "early"), ["check.json"])
+        self.refused(f"scans {QUESTION} -o scans", 2, "is the folder of the scans")
+        self.refused(f"scans {QUESTION} -o file", 4, "file: cannot make the folder")
+        (here / "scans/broken.las").write_bytes(b"LASF" + b"\0" * 500)
         self.refused(f"scans {QUESTION} -o out", 3, "broken.las", "--skip-unreadable leaves out")
         self.check(f"scans {QUESTION} -o out --skip-unreadable")
-        self.refused(f"trajectory.txt {QUESTION} -o out2", 3, "trajectory.txt: is a trajectory",
-                     "--trajectory takes it")
-        self.refused(f"scans {QUESTION} -o scans", 2, "is the folder of the scans")
-        self.refused(f"- {QUESTION} -o out2", 2, "expected scans in files or folders")
-        self.refused(f"out/site.h5 scans {QUESTION} -o out2", 2, "is a store", "give it alone")
-        self.refused(f"out/result.h5 {QUESTION} -o out2", 3, "out/result.h5: is a result", "not a scan or a store")
 
-    def test_model_and_trajectory(self):
-        self.refused("scans --model trajectory.txt --trajectory model.ply --radius 0.1 -o out", 3,
-                     "trajectory.txt: is a trajectory", "--trajectory takes it")
-        self.refused("scans --model model.ply --trajectory model.ply --radius 0.1 -o out", 3,
-                     "model.ply: is", "not a trajectory",
-                     "--model takes the vehicle")
-        self.refused("scans --model none.ply --trajectory trajectory.txt --radius 0.1 -o out", 4,
-                     "none.ply")
-        for piped in ("--model model.ply --trajectory /dev/null", "--model /dev/null --trajectory trajectory.txt"):
-            self.refused(f"scans {piped} --radius 0.1 -o out", 2, "/dev/null: is a pipe or device",
-                         "Write it into a file first")
-        self.refused("scans --trajectory trajectory.txt --radius 0.1 -o out", 2, "--model")
-        self.asked("")
-        self.refused("scans --model site/site.h5 --trajectory trajectory.txt --radius 0.1 -o out",
-                     3, "not a model", "inputs that come first")
-        (self.folder / "broken.obj").write_text("v 0 0 0\nv 1 0 0\nf 1 2 9\n")
-        self.refused("scans --model broken.obj --trajectory trajectory.txt --radius 0.1 -o early", 3,
-                     "broken.obj: line 3: a face names vertex 9")
-        self.assertEqual([path.name for path in (self.folder / "early").iterdir()], ["check.json"])
+    def test_a_limit_of_processes_is_told(self):
+        """Pools of threads that do not fit beside each other, for a user who has no other process."""
+        user = "setpriv --reuid 23456 --regid 23456 --clear-groups".split()
+        if not shutil.which("setpriv") or os.geteuid() != 0 or subprocess.run(
+                [*user, PROGRAM, "--version"], capture_output=True, check=False).returncode != 0:
+            self.skipTest("only root becomes a user without other processes")
+        for folder in (self.place.folder, self.here.folder.parent):
+            os.chmod(folder, 0o755)
+        codes = set()
+        for limit in range(2, 14):
+            out = self.here / "limited"
+            shutil.rmtree(out, ignore_errors=True)
+            out.mkdir()
+            os.chmod(out, 0o777)
+            done = subprocess.run([*user, "prlimit", f"--nproc={limit}", PROGRAM, "check", "scans",
+                                   *shlex.split(QUESTION), "--threads", "4", "-o", "limited"],
+                                  cwd=self.here.folder, capture_output=True, text=True, check=False)
+            codes.add(done.returncode)
+            self.assertEqual(done.returncode == 4, "threads cannot be started" in done.stderr, done.stderr)
+        self.assertEqual(codes, {0, 4})
 
-    def test_options(self):
-        self.refused(f"scans --model model.ply --trajectory trajectory.txt -o out", 2, "--radius")
-        self.refused(f"scans {QUESTION.replace('0.1', 'wide')} -o out", 2, "--radius", "wide")
-        self.refused(f"scans {QUESTION} -o out --forward z", 2, "same axis")
-        self.refused(f"scans {QUESTION} -o out --engine fast", 2, "--engine")
-        self.refused(f"scans {QUESTION} -o out --between-poses --clearance 0.3", 2, "clearance")
-        self.refused(f"scans {QUESTION} -o out --vehicle wagon.json", 2, "--vehicle", "--model")
-        self.assertFalse((self.folder / "out").exists())
-        (self.folder / "file").write_text("")
-        self.refused(f"scans {QUESTION} -o file", 4, "file: cannot make the folder")
-
-    def test_units(self):
-        corners = [(x, y, z) for x in (-2000, 2000) for y in (-900, 900) for z in (300, 1400)]
-        (self.folder / "mm.obj").write_text(
-            "".join(f"v {x} {y} {z}\n" for x, y, z in corners) + "f 1 2 4 3\nf 5 6 8 7\nf 1 5 7 3\n")
-        wrong = self.check("scans --model mm.obj --trajectory trajectory.txt --radius 0.1 -o wrong")
-        self.assertIn("unit", wrong.stderr)
-        right = self.check("scans --model mm.obj --model-unit mm --trajectory trajectory.txt "
-                           "--radius 0.1 -o right")
-        self.assertNotEqual(right.stdout.splitlines()[-1], wrong.stdout.splitlines()[-1])
-
-
-class Open(Site):
-    def browser(self, name):
-        folder = self.folder / "browser"
-        folder.mkdir()
-        script = folder / name
-        script.write_text(f"#!/bin/sh\nprintf '%s' \"$1\" > {self.folder}/opened\n")
-        script.chmod(0o755)
-        return {**os.environ, "PATH": str(folder)}
-
-    def opened(self):
-        for _ in range(100):
-            if (self.folder / "opened").exists() and (self.folder / "opened").read_text():
-                return (self.folder / "opened").read_text()
-            time.sleep(0.05)
-        return None
-
-    def test_the_page_is_opened(self):
+    def test_the_page_is_opened_where_there_is_a_browser(self):
+        opened = self.here / "opened"
         for name in ("xdg-open", "open"):
-            with self.subTest(name):
-                self.asked("--open", env=self.browser(name))
-                self.assertEqual(self.opened(), "site/report.html")
-                shutil.rmtree(self.folder / "browser")
-                (self.folder / "opened").unlink()
-
-    def test_it_says_where_no_browser_is(self):
-        done = self.asked("--open", env={**os.environ, "PATH": str(self.folder)})
-        self.assertIn("neither xdg-open nor open", done.stderr)
-        self.assertIn("site/report.html", done.stderr)
+            script = self.here / name / name
+            self.here.put(f"{name}/{name}", f"#!/bin/sh\nprintf '%s' \"$1\" > {opened}.new\n"
+                          f"/bin/mv {opened}.new {opened}\n")
+            script.chmod(0o755)
+            self.check(f"{SITE} --open", env={**os.environ, "PATH": str(script.parent)})
+            last = time.monotonic() + 10
+            while not opened.exists() and time.monotonic() < last:
+                time.sleep(0.05)
+            self.assertEqual(opened.read_text(), "site/report.html")
+            opened.unlink()
+        self.check(f"{SITE} --open", 0, "neither xdg-open nor open", "site/report.html",
+                   env={**os.environ, "PATH": str(self.here.folder)})
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[2:])
+    unittest.main()

@@ -68,6 +68,14 @@ bool goes_wrong() {
   return true;
 }
 
+/// Calls what cannot do less than asked, or goes wrong with an error; only if it `may`.
+template <typename Call>
+int all_or_nothing(bool may, const std::string& path, int error, Call call) {
+  if (!may || !is_ours(path) || !goes_wrong()) return call();
+  errno = is_kind("interrupt") ? EINTR : error;
+  return -1;
+}
+
 /// Reads or writes `count` bytes by `call`, which is given how many; goes wrong in the way that is
 /// set.
 template <typename Call>
@@ -128,30 +136,23 @@ ssize_t pwrite(int descriptor, const void* from, std::size_t count, off_t at) {
 
 int fsync(int descriptor) {
   static auto* const original = next<int(int)>("fsync");
-  if (!may_fail() || !is_ours(path_of(descriptor) + "/") || !goes_wrong()) {
-    return original(descriptor);
-  }
-  errno = is_kind("interrupt") ? EINTR : EIO;
-  return -1;
+  return all_or_nothing(may_fail(), path_of(descriptor) + "/", EIO,
+                        [=] { return original(descriptor); });
 }
 
 int ftruncate64(int descriptor, off64_t size) {
   static auto* const original = next<int(int, off64_t)>("ftruncate64");
-  if (!is_kind("fail") || !is_ours(path_of(descriptor)) || !goes_wrong()) {
-    return original(descriptor, size);
-  }
-  errno = ENOSPC;
-  return -1;
+  return all_or_nothing(is_kind("fail"), path_of(descriptor), ENOSPC,
+                        [=] { return original(descriptor, size); });
 }
 
 int ftruncate(int descriptor, off_t size) { return ftruncate64(descriptor, size); }
 
 int posix_fallocate64(int descriptor, off64_t at, off64_t size) {
   static auto* const original = next<int(int, off64_t, off64_t)>("posix_fallocate64");
-  if (!may_fail() || !is_ours(path_of(descriptor)) || !goes_wrong()) {
-    return original(descriptor, at, size);
-  }
-  return is_kind("interrupt") ? EINTR : ENOSPC;
+  const int result = all_or_nothing(may_fail(), path_of(descriptor), ENOSPC,
+                                    [=] { return original(descriptor, at, size); });
+  return result < 0 ? errno : result;
 }
 
 int posix_fallocate(int descriptor, off_t at, off_t size) {
@@ -169,11 +170,8 @@ int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*
 int renameat2(int from_folder, const char* from, int to_folder, const char* to, unsigned flags) {
   static auto* const original =
       next<int(int, const char*, int, const char*, unsigned)>("renameat2");
-  if (!is_kind("fail") || !is_ours(from) || !goes_wrong()) {
-    return original(from_folder, from, to_folder, to, flags);
-  }
-  errno = EIO;
-  return -1;
+  return all_or_nothing(is_kind("fail"), from, EIO,
+                        [=] { return original(from_folder, from, to_folder, to, flags); });
 }
 
 }  // extern "C"
