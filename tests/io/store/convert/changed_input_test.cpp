@@ -33,18 +33,16 @@ class At final : public Progress {
 };
 
 /// Two scans, and a file of the second one's size with other points in the same place.
-struct Scans {
+struct Scans : Conversion {
   Scans() {
-    write_las(first, points);
-    write_las(second, points);
+    add_las("a.las", points);
+    add_las("b.las", points);
     auto others = points;
     std::swap(others.front(), others.back());
     write_las(other, others);
     // The file's time is set back, so that a change is seen however coarse the file system's clock
     // is.
-    const auto past = fs::last_write_time(second) - std::chrono::hours(1);
-    fs::last_write_time(second, past);
-    options = conversion_of({first, second}, folder / "a.h5");
+    fs::last_write_time(second, fs::last_write_time(second) - std::chrono::hours(1));
   }
 
   std::string refusal_of_change(const std::string& stage, const std::function<void()>& change) {
@@ -57,10 +55,8 @@ struct Scans {
     return {};
   }
 
-  ScratchFolder folder;
-  fs::path first = folder / "a.las", second = folder / "b.las", other = folder / "other.las";
+  fs::path second = folder / "b.las", other = folder / "other.las";
   std::vector<Quantum> points = cube_cloud(1000, -50, 50, 1);
-  ConversionOptions options;
 };
 
 }  // namespace
@@ -95,7 +91,7 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
 TEST_CASE("points are distributed only where they are those that were counted") {
   Scans scans;
   NoProgress progress;
-  EnvironmentSource environment({scans.first, scans.second}, {}, progress);
+  EnvironmentSource environment(scans.options.inputs, {}, progress);
   const Lattice lattice;
   InputSurvey survey;
   PlaceCounter places({});
