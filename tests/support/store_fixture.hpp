@@ -1,8 +1,10 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -72,6 +74,27 @@ struct Conversion {
 
  private:
   void add_input(const std::filesystem::path& path);
+};
+
+/// Calls `begun` when a stage of a conversion begins, and stops after `advances` of that stage.
+class WatchedStage final : public Progress {
+ public:
+  explicit WatchedStage(std::string stage, std::function<void()> begun, int advances = 1 << 30)
+      : stage_(std::move(stage)), begun_(std::move(begun)), left_(advances) {}
+
+  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
+    in_stage_ = stage == stage_;
+    if (in_stage_) begun_();
+  }
+  void advance(std::uint64_t) override { left_ -= in_stage_ ? 1 : 0; }
+  void end() override { in_stage_ = false; }
+  bool stop_requested() const override { return left_ <= 0; }
+
+ private:
+  std::string stage_;
+  std::function<void()> begun_;
+  std::atomic<int> left_;
+  bool in_stage_ = false;
 };
 
 /// The number of this name in a message; fails where there is none.

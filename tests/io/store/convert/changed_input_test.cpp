@@ -16,22 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls a function when a stage of the conversion begins.
-class At final : public Progress {
- public:
-  At(std::string stage, std::function<void()> act) : stage_(std::move(stage)), act_(act) {}
-
-  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
-    if (stage == stage_) act_();
-  }
-  void advance(std::uint64_t) override {}
-  void end() override {}
-
- private:
-  std::string stage_;
-  std::function<void()> act_;
-};
-
 /// Two scans, and a file of the second one's size with other points in the same place.
 struct Scans : Conversion {
   Scans() {
@@ -46,7 +30,7 @@ struct Scans : Conversion {
   }
 
   std::string refusal_of_change(const std::string& stage, const std::function<void()>& change) {
-    At progress(stage, change);
+    WatchedStage progress(stage, change);
     try {
       convert_scans(options, progress);
     } catch (const InputError& error) {

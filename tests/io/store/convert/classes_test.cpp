@@ -60,19 +60,6 @@ TEST_CASE("a store of points without classes, or all of class 0, says nothing of
   CHECK(bytes_of(scan.options.output).find("classes") == std::string::npos);
 }
 
-TEST_CASE("of several scans those without classes have class 0, and dropped points none") {
-  const auto once = random_classes(300, 9);
-  ClassedScan scan(once);
-  scan.add_ply("b.ply", std::vector<Vec3>{{1, 2, 3}, {std::nan(""), 0, 0}, {4, 5, 6}});
-  scan.options.inputs.push_back(scan.options.inputs[0]);
-  auto classes = once;
-  classes.insert(classes.end(), 3, 0);
-  classes.insert(classes.end(), once.begin(), once.end());
-  const StoreReader store = scan.store();
-  CHECK(store.point_count() + 1 == classes.size());
-  CHECK(classes_by_source(store) == classes);
-}
-
 TEST_CASE("classes change the fingerprint of a store, not the hash of its points") {
   std::set<std::uint64_t> prints, hashes, class_hashes;
   for (const unsigned most : {0U, 5U, 6U}) {
@@ -281,7 +268,7 @@ TEST_CASE("cubes of withheld points have edges of a metre in feet too") {
   CHECK(store.metadata().withheld->cubes == conversion.scan.cubes(1 / 0.3048));
 }
 
-TEST_CASE("source numbers count withheld points: of several scans, and in a file of origins") {
+TEST_CASE("of several scans each point has its class, and its number counts dropped points") {
   FlaggedConversion conversion(7, 300);
   const FlaggedScan& scan = conversion.scan;
   conversion.add_ply("b.ply", std::vector<Vec3>{{101, -202, 3}, {NAN, 0, 0}, {104, -205, 2}});
@@ -296,6 +283,10 @@ TEST_CASE("source numbers count withheld points: of several scans, and in a file
   check_equal(store.metadata().points_without_place(), 1);
   check_equal(store.metadata().source_points, {300, 3, 300});
   CHECK(store.metadata().withheld->cubes == scan.cubes());
+  const auto classes = classes_by_source(store);
+  for (const std::uint64_t i : scan.kept) REQUIRE(classes[i] == scan.las.bytes_of_class[i]);
+  for (const std::uint64_t i : scan.kept) REQUIRE(classes[303 + i] == classes[i]);
+  check_equal(classes[300] + classes[302], 0);
   const auto origins = origins_by_source(store);
   for (const std::uint64_t source : sources)
     REQUIRE(origins[source] == origins[source < 301 ? 0 : 302]);

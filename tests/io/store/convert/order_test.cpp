@@ -1,6 +1,5 @@
 // The store's order of points, against a plain rewriting of the rule.
 #include "io/files/xxh64.hpp"
-#include "io/scans/point_reader.hpp"
 #include "io/store/convert/distribute.hpp"
 #include "io/store/convert/split_tree.hpp"
 #include "support/bytes/laz/laz_samples.hpp"
@@ -50,70 +49,27 @@ TEST_CASE("points stand in the order of the rule for every size of cell, and in 
   check_order(cube_cloud(150000, -2000, 2000, 9), 1000, kMillimetres);
 }
 
-// Files that are read in pieces, several at a time, and the memory or files in which points wait.
-namespace {
-
-/// A conversion of a LAS and a LAZ file of several pieces each, the LAZ with bytes behind its
-/// points.
-struct PiecedFiles : Conversion {
-  PiecedFiles() {
-    add_las("a.las", cube_cloud(150'000, -5000, 5000, 1));
-    LazBytes compressed = laz_bytes(3, 150'000);
-    compressed.chunks = {7001};
-    add("b.laz", compressed.build());
-  }
-};
-
-}  // namespace
-
-TEST_CASE("pieces of a file hold its points and bytes in their order") {
-  const PiecedFiles files;
-  const auto& path = files.options.inputs[GENERATE(0u, 1u)];
-  const auto reader = open_point_file(path);
-  REQUIRE(reader->pieces() > 2);
-  std::vector<Quantum> whole, parts;
-  PointBatch batch;
-  while (reader->read(batch)) whole.insert(whole.end(), batch.quanta.begin(), batch.quanta.end());
-  const std::string bytes = bytes_of(path);
-  std::uint64_t end = 0;
-  for (std::size_t piece = 0; piece < reader->pieces(); ++piece) {
-    PieceBytes from;
-    reader->read_piece(piece, batch, &from);
-    check_equal(batch.quanta.size(), reader->points_of_piece(piece));
-    CHECK(batch.positions.empty());
-    parts.insert(parts.end(), batch.quanta.begin(), batch.quanta.end());
-    CHECK((piece == 0 || from.first == end));
-    end = from.first + from.count;
-    check_equal(std::memcmp(from.bytes.get(), bytes.data() + from.first, from.count), 0);
-  }
-  CHECK(parts == whole);
-}
-
 TEST_CASE("a store tells sizes and hashes of files read in pieces and of others") {
-  PiecedFiles files;
-  files.add_las("c.las", std::vector<Quantum>{});
-  files.add("d.xyz", "1 2 3\n4 5 6\n");
-  files.options.inputs[1] = files.options.inputs[0];
-  const StoreReader store = files.store();
+  Conversion conversion;
+  LazBytes laz = laz_bytes(3, 150'000);
+  laz.chunks = {7001};
+  const auto& [sx, sy, sz] = laz.las.scale;
+  const auto& [x, y, z] = laz.las.offset;
+  const Quantisation steps{{sx, sy, sz}, {x, y, z}};
+  conversion.add_las("a.las", cube_cloud(150'000, -5000, 5000, 1), steps);
+  conversion.add("b.laz", laz.build());  // with bytes behind its points
+  conversion.add_las("c.las", std::vector<Quantum>{}, steps);
+  conversion.add("d.xyz", "1 2 3\n4 5 6\n");
+  conversion.options.cell_points = 10'000;
+  const StoreReader store = conversion.store();
   std::vector<SourceFile> expected;
-  for (const auto& input : files.options.inputs) {
+  for (const auto& input : conversion.options.inputs) {
     const std::string bytes = bytes_of(input);
     expected.push_back(
         {input.filename().string(), bytes.size(), xxh64(std::as_bytes(std::span(bytes)))});
   }
   CHECK(store.metadata().sources == expected);
-}
-
-TEST_CASE("points wait in files and the store is the same whatever the memory") {
-  constexpr std::size_t kPoints = 1'000'000;
-  Conversion conversion(1000);
-  conversion.add_las("a.las", cube_cloud(kPoints, -5000, 5000, 1));
-  conversion.options.memory_bytes = kLeastConversionMemory;
-  CHECK(conversion.convert().temporary_bytes == kPoints * sizeof(DistributedPoint));
-  const std::string bytes = bytes_of(conversion.options.output);
-  conversion.options.memory_bytes = std::uint64_t{1} << 30;
-  CHECK(conversion.convert().temporary_bytes == kPoints * sizeof(DistributedPoint));
-  CHECK(bytes_of(conversion.options.output) == bytes);
+  check_equal(store.metadata().source_points, {150'000, 150'000, 0, 2});
 }
 
 // Clouds of several buckets, and bins that hold more than a bucket.

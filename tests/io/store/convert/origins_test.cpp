@@ -96,37 +96,30 @@ TEST_CASE("a store without origins says nothing of them, and origins change its 
 }
 
 TEST_CASE("a file of origins that is not one is refused with its line") {
-  struct Refused {
-    std::string text, message;
-  };
-  const std::string header = kOriginsHeader;
   ScanWithOrigins scan;
-  for (const auto& [text, message] : std::vector<Refused>{
-           {"", "is empty"},
-           {header, "holds no origin"},
-           {"x,y,z\n0,1,2\n", "line 1"},
-           {"0,1,2,3\n", "expected the header first,x,y,z"},
-           {std::string("\x7f"
-                        "ELF\0\1\2\3\n",
-                        9),
-            "line 1"},
-           {header + "0,nan,0,0\n", "line 2: \"nan\"; expected a finite coordinate"},
-           {header + "0,0,0,inf\n", "line 2: \"inf\"; expected a finite coordinate"},
-           {header + "0,0,0\n", "line 2"},
-           {header + "0,0,0,0,0\n", "line 2"},
-           {header + "-1,0,0,0\n", "line 2"},
-           {header + "0.5,0,0,0\n", "line 2"},
-           {header + "1,0,0,0\n", "line 2: starts at source index 1; expected 0"},
-           {header + "0,1,1,1\n9,0,0,0\n9,0,0,0\n", "line 4: source index 9 after 9"},
-           {header + "0,1,1,1\n9,0,0,0\n8,0,0,0\n", "line 4: source index 8 after 9"},
-           {header + "0,1,1,1\n300,0,0,0\n", "line 3: starts at source index 300"},
-           {header + "0,1,1,1.25", "line 2: ends without a line break"},
-           {header + "0,1e30,1,1\n", "too far away"},
-       }) {
+  const auto check = [&](const std::string& text, const char* words) {
+    CAPTURE(text);
     scan.give(text);
-    check_says(scan.refusal(), message);
+    check_says(scan.refusal(), words);
     CHECK_FALSE(std::filesystem::exists(scan.options.output));
+  };
+  const std::string& header = kOriginsHeader;
+  check("", "is empty");
+  check(header, "holds no origin");
+  check("x,y,z\n0,1,2\n", "line 1");
+  check("0,1,2,3\n", "expected the header first,x,y,z");
+  check({"\x7f\x45LF\0\1\2\3\n", 9}, "line 1");
+  for (const char* row : {"0,0,0", "0,0,0,0,0", "-1,0,0,0", "0.5,0,0,0"}) {
+    check(header + row + "\n", "line 2");
   }
+  check(header + "0,nan,0,0\n", "line 2: \"nan\"; expected a finite coordinate");
+  check(header + "0,0,0,inf\n", "line 2: \"inf\"; expected a finite coordinate");
+  check(header + "1,0,0,0\n", "line 2: starts at source index 1; expected 0");
+  check(header + "0,1,1,1\n9,0,0,0\n9,0,0,0\n", "line 4: source index 9 after 9");
+  check(header + "0,1,1,1\n9,0,0,0\n8,0,0,0\n", "line 4: source index 8 after 9");
+  check(header + "0,1,1,1\n300,0,0,0\n", "line 3: starts at source index 300");
+  check(header + "0,1,1,1.25", "line 2: ends without a line break");
+  check(header + "0,1e30,1,1\n", "too far away");
   scan.options.origins = scan.folder / "none.csv";
   check_says(scan.refusal<Error>(), "none.csv");
   scan.give(header + "0,1,2,3\n");

@@ -112,6 +112,7 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
     const Outcome converted = outcome_of(scan, {.unit_z = FileUnit::named("us-ft")});
     check_equal(converted.refusal + converted.codes, "");
     check_near(converted.report.box.value().hi.z, 20 * foot, 1e-12);
+    check_near(converted.report.box->hi.x, 500'005, 1e-9);
     check_equal(converted.report.metadata.quantisation.scale[2], 0.001 * foot);
     check_equal(converted.report.largest_change, 0);
     const Outcome ignored = outcome_of(scan, {.ignore_crs = true});

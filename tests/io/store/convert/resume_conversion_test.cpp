@@ -158,25 +158,6 @@ class Resumed : public Conversion {
   std::string expected_;
 };
 
-/// Throws where asked to stop after a number of advances of a stage.
-class StopsIn final : public Progress {
- public:
-  StopsIn(std::string stage, int advances) : stage_(std::move(stage)), left_(advances) {}
-  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
-    in_stage_ = stage == stage_;
-  }
-  void advance(std::uint64_t) override {
-    if (in_stage_) --left_;
-  }
-  void end() override { in_stage_ = false; }
-  bool stop_requested() const override { return left_ <= 0; }
-
- private:
-  std::string stage_;
-  bool in_stage_ = false;
-  int left_;
-};
-
 struct ResumedRow {
   const char* name;
   std::function<void(Resumed&)> make;
@@ -276,7 +257,8 @@ TEST_CASE("buckets that were written are copied, also by a resumption that is st
   for (const FilesLeft& files : killed) {
     scans.put(files);
     for (const int advances : {1, 700}) {
-      StopsIn progress("partition", advances);
+      WatchedStage progress(
+          "partition", [] {}, advances);
       CHECK_THROWS_AS(convert_scans(scans.resuming(), progress), Interrupted);
       CHECK(names_in(scans.out()).size() >= 2);
     }
