@@ -66,22 +66,6 @@ void check(bool holds, const Caller& caller, const MakeDifference& difference) {
   fail_check("found:    " + texts.found + "\nexpected: " + texts.expected, caller);
 }
 
-template <typename List>
-void check_equal_lists(const List& found, const List& expected, const Caller& caller) {
-  if (found.size() == expected.size()) {
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      if (found[i] == expected[i]) continue;
-      fail_check("element " + std::to_string(i) + " differs\nfound:    " + shown_list(found) +
-                     "\nexpected: " + shown_list(expected),
-                 caller);
-      return;
-    }
-    report(true, {}, caller);
-  } else {
-    fail_check("found:    " + shown_list(found) + "\nexpected: " + shown_list(expected), caller);
-  }
-}
-
 }  // namespace
 
 RowName::RowName(std::string_view name, const Caller& caller)
@@ -177,45 +161,41 @@ void check_equal_whole(WholeNumber found, WholeNumber expected, const Caller& ca
           return Difference{shown(found), shown(expected)};
         });
 }
-void check_equal(const std::vector<std::string>& found, const std::vector<std::string>& expected,
-                 const Caller& caller) {
-  check_equal_lists(found, expected, caller);
+
+template <typename Value>
+void check_equal(const std::vector<Value>& found,
+                 const std::type_identity_t<std::vector<Value>>& expected, const Caller& caller) {
+  const std::size_t common = std::min(found.size(), expected.size());
+  std::size_t differs = 0;
+  while (differs < common && found[differs] == expected[differs]) ++differs;
+  if (differs == found.size() && differs == expected.size()) {
+    report(true, {}, caller);
+    return;
+  }
+  fail_check("element " + std::to_string(differs) + " differs\nfound:    " + shown_list(found) +
+                 "\nexpected: " + shown_list(expected),
+             caller);
 }
-void check_equal(const std::vector<double>& found, const std::vector<double>& expected,
-                 const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
-void check_equal(const std::vector<bool>& found, const std::vector<bool>& expected,
-                 const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
-void check_equal(const std::vector<std::uint8_t>& found, const std::vector<std::uint8_t>& expected,
-                 const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
-void check_equal(const std::vector<std::uint32_t>& found,
-                 const std::vector<std::uint32_t>& expected, const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
-void check_equal(const std::vector<std::uint64_t>& found,
-                 const std::vector<std::uint64_t>& expected, const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
-void check_equal(const std::vector<Vec3>& found, const std::vector<Vec3>& expected,
-                 const Caller& caller) {
-  check_equal_lists(found, expected, caller);
-}
+template void check_equal(const std::vector<std::string>&, const std::vector<std::string>&,
+                          const Caller&);
+template void check_equal(const std::vector<double>&, const std::vector<double>&, const Caller&);
+template void check_equal(const std::vector<bool>&, const std::vector<bool>&, const Caller&);
+template void check_equal(const std::vector<std::uint8_t>&, const std::vector<std::uint8_t>&,
+                          const Caller&);
+template void check_equal(const std::vector<std::uint32_t>&, const std::vector<std::uint32_t>&,
+                          const Caller&);
+template void check_equal(const std::vector<std::uint64_t>&, const std::vector<std::uint64_t>&,
+                          const Caller&);
+template void check_equal(const std::vector<Vec3>&, const std::vector<Vec3>&, const Caller&);
 
 void check_equal(const std::optional<double>& found, double expected, const Caller& caller) {
-  check(found == expected, caller, [&] {
-    return Difference{found ? shown(*found) : "nothing", shown(expected)};
-  });
+  if (found) return check_equal(*found, expected, caller);
+  fail_check("nothing, expected " + shown(expected), caller);
 }
 void check_equal(const std::optional<std::uint64_t>& found, std::uint64_t expected,
                  const Caller& caller) {
-  check(found == expected, caller, [&] {
-    return Difference{found ? shown(*found) : "nothing", shown(expected)};
-  });
+  if (found) return check_equal(*found, expected, caller);
+  fail_check("nothing, expected " + shown(expected), caller);
 }
 
 }  // namespace clearway::test

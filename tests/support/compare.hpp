@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -55,21 +56,10 @@ void check_near(std::span<const double> found, const std::vector<double>& expect
 void check_equal(double found, double expected, const Caller& caller = Caller::current());
 void check_equal(std::string_view found, std::string_view expected,
                  const Caller& caller = Caller::current());
-void check_equal(const std::vector<std::string>& found, const std::vector<std::string>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<double>& found, const std::vector<double>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<bool>& found, const std::vector<bool>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<std::uint8_t>& found, const std::vector<std::uint8_t>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<std::uint32_t>& found,
-                 const std::vector<std::uint32_t>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<std::uint64_t>& found,
-                 const std::vector<std::uint64_t>& expected,
-                 const Caller& caller = Caller::current());
-void check_equal(const std::vector<Vec3>& found, const std::vector<Vec3>& expected,
+/// For strings, numbers, truth values and places.
+template <typename Value>
+void check_equal(const std::vector<Value>& found,
+                 const std::type_identity_t<std::vector<Value>>& expected,
                  const Caller& caller = Caller::current());
 
 /// A value that is missing fails.

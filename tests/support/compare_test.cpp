@@ -44,49 +44,18 @@ TEST_CASE("JSON is compared by the members that are named") {
 TEST_CASE("rejected: words in another order", "[!shouldfail]") {
   check_says("one two", "two ... one");
 }
-TEST_CASE("rejected: a word that is missing", "[!shouldfail]") { check_says("one two", "three"); }
 TEST_CASE("rejected: a text where none is expected", "[!shouldfail]") { check_says("one", ""); }
-TEST_CASE("rejected: a word that should be missing", "[!shouldfail]") {
-  check_lacks("one two", "two");
-}
-TEST_CASE("rejected: numbers apart", "[!shouldfail]") { check_near(1, 1.1, 0.05); }
 TEST_CASE("rejected: no number", "[!shouldfail]") { check_near(std::nan(""), 1, 1e9); }
-TEST_CASE("rejected: places apart", "[!shouldfail]") { check_near(Vec3{1, 2, 3}, {1, 2, 4}, 0.5); }
-TEST_CASE("rejected: fewer numbers", "[!shouldfail]") {
-  check_near(std::vector<double>{1}, {1, 2}, 0.5);
-}
-TEST_CASE("rejected: another number", "[!shouldfail]") { check_equal(1.0, 1.0 + 1e-15); }
-TEST_CASE("rejected: another sign", "[!shouldfail]") { check_equal(std::int32_t{-7}, 7); }
 TEST_CASE("rejected: a wrapped number", "[!shouldfail]") {
   check_equal(std::int64_t{-1}, std::uint64_t{0} - 1);
 }
-TEST_CASE("rejected: another text", "[!shouldfail]") { check_equal("a", "b"); }
 TEST_CASE("rejected: another list", "[!shouldfail]") {
   check_equal(std::vector<std::uint32_t>{1, 2}, {1, 3});
-}
-TEST_CASE("rejected: a shorter list", "[!shouldfail]") {
-  check_equal(std::vector<std::string>{"a"}, {});
 }
 TEST_CASE("rejected: an act that succeeds", "[!shouldfail]") {
   check_refused([] {}, "words");
 }
-TEST_CASE("rejected: another message", "[!shouldfail]") {
-  check_refused<std::logic_error>([] { throw std::logic_error("a"); }, "b");
-}
-TEST_CASE("rejected: another value in JSON", "[!shouldfail]") {
-  check_json(nlohmann::json{{"a", 1}}, R"({"a": 2})");
-}
 TEST_CASE("rejected: a member that JSON lacks", "[!shouldfail]") {
   check_json(nlohmann::json{{"a", 1}}, R"({"b": null})");
-}
-TEST_CASE("rejected: a list of another length in JSON", "[!shouldfail]") {
-  check_json(nlohmann::json{1, 2}, "[1]");
-}
-TEST_CASE("rejected: a text that is no JSON", "[!shouldfail]") { check_json_text("{", "{}"); }
-TEST_CASE("rejected: a number in JSON that is too far", "[!shouldfail]") {
-  check_near(nlohmann::json{{"a", 1}}, "/a", 1.001);
-}
-TEST_CASE("rejected: no number in JSON", "[!shouldfail]") {
-  check_near(nlohmann::json{{"a", "1"}}, "/a", 1);
 }
 TEST_CASE("rejected: other bytes", "[!shouldfail]") { check_same("bytes", "byteS"); }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstring>
+
 #include "clearway/result.hpp"
 #include "io/result/result.hpp"
 #include "support/scratch_folder.hpp"
@@ -43,6 +45,19 @@ Rows read_rows(const ResultReader& reader) {
   Rows all, batch;
   for (RowStream<Rows> stream(reader); stream.read(batch);) append_rows(batch, all);
   return all;
+}
+
+/// Whether two tables have the same columns, bit by bit, so that NaN equals NaN.
+template <typename Rows>
+bool same_table(const Rows& a, const Rows& b) {
+  bool same = true;
+  for_each_column<Rows>([&](const auto& column) {
+    const auto& x = a.*column.values;
+    const auto& y = b.*column.values;
+    same = same && x.size() == y.size() &&
+           std::memcmp(x.data(), y.data(), x.size() * sizeof x[0]) == 0;
+  });
+  return same;
 }
 
 bool same_rows(const Collisions& a, const Collisions& b);

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstring>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -25,6 +27,15 @@ class ScratchFolder {
 };
 
 std::string bytes_of(const std::filesystem::path& path);
+
+/// The value that starts at a byte. Throws std::out_of_range beyond the last.
+template <typename Value>
+Value value_at(std::string_view bytes, std::size_t at) {
+  if (bytes.size() < at + sizeof(Value)) throw std::out_of_range("beyond the last byte");
+  Value value;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
 
 /// Replaces the bytes of a file. An existing file is written in place, because a file that was cut
 /// to nothing goes to the disk as soon as it is closed, which takes hundreds of times as long.

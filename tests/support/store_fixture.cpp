@@ -7,6 +7,7 @@
 #include "io/scans/las/las_writer.hpp"
 #include "io/scans/ply/ply_writer.hpp"
 #include "io/store/verify_store.hpp"
+#include "support/compare.hpp"
 
 namespace clearway::test {
 
@@ -45,6 +46,52 @@ ConversionReport convert_quietly(const ConversionOptions& options) {
   return convert_scans(options, progress);
 }
 
+bool is_converted_by(const ConversionOptions& options) {
+  NoProgress progress;
+  return is_converted(options, progress);
+}
+
+void Conversion::add(const std::string& name, const std::string& bytes) {
+  put_bytes(folder / name, bytes);
+  add_input(folder / name);
+}
+
+void Conversion::add_las(const std::string& name, std::span<const Quantum> points,
+                         const Quantisation& quantisation) {
+  write_las(folder / name, points, quantisation);
+  add_input(folder / name);
+}
+
+void Conversion::add_ply(const std::string& name, std::span<const Vec3> points) {
+  write_ply(folder / name, points);
+  add_input(folder / name);
+}
+
+void Conversion::add_input(const std::filesystem::path& path) {
+  if (std::ranges::find(options.inputs, path) == options.inputs.end()) {
+    options.inputs.push_back(path);
+  }
+}
+
+std::string Conversion::converted_bytes() const {
+  convert();
+  return bytes_of(options.output);
+}
+
+StoreReader Conversion::store() const {
+  convert();
+  check_equal(faults_of(StoreReader(options.output)), {});
+  return StoreReader(options.output);
+}
+
+double number_of(const Message& message, std::string_view name) {
+  for (const auto& [key, value] : message.numbers) {
+    if (key == name) return value;
+  }
+  fail_check("no number " + std::string(name) + ": " + message.text);
+  return 0;
+}
+
 std::vector<std::uint8_t> classes_by_source(const StoreReader& store) {
   std::vector<std::uint8_t> classes(store.metadata().input_points);
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
@@ -53,6 +100,18 @@ std::vector<std::uint8_t> classes_by_source(const StoreReader& store) {
     for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) classes[sources[i]] = packed[i];
   }
   return classes;
+}
+
+std::vector<std::optional<OriginQuanta>> origins_by_source(const StoreReader& store) {
+  std::vector<std::optional<OriginQuanta>> origins(store.metadata().input_points);
+  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+    const auto numbers = store.origins(cell);
+    const auto sources = store.sources(cell);
+    for (std::uint32_t i = 0; i < store.cells()[cell].count; ++i) {
+      if (numbers[i] > 0) origins[sources[i]] = store.metadata().origins->quanta[numbers[i] - 1];
+    }
+  }
+  return origins;
 }
 
 std::vector<StoredPoint> points_of_cells(const StoreReader& store, std::uint32_t first,

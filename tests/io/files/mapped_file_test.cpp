@@ -1,16 +1,18 @@
 #include "io/files/mapped_file.hpp"
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/result_fixture.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -25,40 +27,6 @@ TEST_CASE("a map shows the file's bytes") {
   CHECK(MappedFile(folder / "empty").bytes().empty());
   CHECK_THROWS_AS(MappedFile(folder / "none"), ResourceError);
   CHECK_THROWS_AS(MappedFile(folder / ""), ResourceError);
-}
-
-TEST_CASE("a file that shrinks under its map ends the program with its name") {
-  const ScratchFolder folder;
-  const auto path = folder / "shrinking";
-  put_bytes(path, std::string(100'000, 'x'));
-  int ends[2];
-  REQUIRE(::pipe(ends) == 0);
-  const pid_t child = ::fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    ::dup2(ends[1], STDERR_FILENO);
-    install_map_fault_handler(4);
-    const MappedFile map(path);
-    if (::truncate(path.c_str(), 10) != 0) ::_exit(99);
-    const volatile std::byte lost = map.bytes()[90'000];
-    ::_exit(lost == std::byte{0} ? 98 : 97);
-  }
-  ::close(ends[1]);
-  std::string message(1000, '\0');
-  message.resize(
-      static_cast<std::size_t>(std::max<ssize_t>(0, ::read(ends[0], message.data(), 1000))));
-  while (true) {  // the system writes the text in parts
-    char more[200];
-    const ssize_t got = ::read(ends[0], more, sizeof more);
-    if (got <= 0) break;
-    message.append(more, static_cast<std::size_t>(got));
-  }
-  ::close(ends[0]);
-  int status = 0;
-  REQUIRE(::waitpid(child, &status, 0) == child);
-  REQUIRE(WIFEXITED(status));
-  check_equal(WEXITSTATUS(status), 4);
-  check_says(message, std::string(path.string()) + " ... shrank");
 }
 
 TEST_CASE("a map that survives a file that shrinks has zeros there and says so") {
@@ -102,20 +70,34 @@ TEST_CASE("a fault is that of its own map, not of the one that lies before it in
   for (const auto& map : maps) CHECK_FALSE(map->failed());
 }
 
-TEST_CASE("a fault that concerns no map goes to the handler that was there before") {
+TEST_CASE("a fault of a map ends the program with the file's name, and another one as before") {
   const ScratchFolder folder;
-  put_bytes(folder / "map", "abc");
-  const pid_t child = ::fork();
-  REQUIRE(child >= 0);
-  if (child == 0) {
-    ::signal(SIGBUS, [](int) { ::_exit(42); });
-    const MappedFile map(folder / "map");
-    map.survive_faults();
-    ::raise(SIGBUS);
-    ::_exit(98);
-  }
-  int status = 0;
-  REQUIRE(::waitpid(child, &status, 0) == child);
-  REQUIRE(WIFEXITED(status));
-  check_equal(WEXITSTATUS(status), 42);
+  const auto path = folder / "shrinking";
+  put_bytes(path, std::string(100'000, 'x'));
+  const auto end_of = [](const std::function<int()>& act) {
+    const pid_t child = ::fork();
+    if (child == 0) ::_exit(act());
+    int status = 0;
+    REQUIRE(::waitpid(child, &status, 0) == child);
+    REQUIRE(WIFEXITED(status));
+    return WEXITSTATUS(status);
+  };
+  check_equal(end_of([&] {
+                ::dup2(::creat((folder / "said").c_str(), 0600), STDERR_FILENO);
+                install_map_fault_handler(4);
+                const MappedFile map(path);
+                if (::truncate(path.c_str(), 10) != 0) return 99;
+                const volatile std::byte lost = map.bytes()[90'000];
+                return lost == std::byte{0} ? 98 : 97;
+              }),
+              4);
+  check_says(bytes_of(folder / "said"), path.string() + " ... shrank");
+  check_equal(end_of([&] {
+                ::signal(SIGBUS, [](int) { ::_exit(42); });
+                const MappedFile map(path);
+                map.survive_faults();
+                ::raise(SIGBUS);
+                return 98;
+              }),
+              42);
 }

@@ -1,12 +1,13 @@
 #include "io/result/journal.hpp"
 
 #include <algorithm>
+#include <numeric>
 #include <thread>
 
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/result_fixture.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -36,132 +37,126 @@ std::vector<std::uint64_t> numbers_in(const JournalReader& journal) {
   return numbers;
 }
 
-std::vector<std::uint64_t> first_numbers(std::uint64_t count) {
-  std::vector<std::uint64_t> numbers;
-  for (std::uint64_t i = 0; i < count; ++i) numbers.push_back(i);
-  return numbers;
+void check_numbers(const std::vector<std::uint64_t>& found, std::uint64_t count) {
+  std::vector<std::uint64_t> expected(count);
+  std::iota(expected.begin(), expected.end(), 0);
+  check_equal(found, expected);
 }
 
-/// Writes records 0 .. records - 1, and syncs after each of the first `synced`.
-void write_journal(const std::filesystem::path& path, std::uint64_t records, std::uint64_t synced) {
-  JournalWriter writer = JournalWriter::create(path, kIdentity, kNever);
-  for (std::uint64_t i = 0; i < records; ++i) {
-    JournalRecord record = record_of(i);
-    writer.append(record);
-    if (i < synced) writer.sync();
-  }
+std::string flipped(std::string bytes, std::size_t at, int bit) {
+  bytes[at] = static_cast<char>(bytes[at] ^ 1 << bit);
+  return bytes;
 }
+
+struct JournalFile {
+  /// Appends records first .. end - 1, and syncs after each of the first `synced`.
+  static void append(JournalWriter writer, std::uint64_t first, std::uint64_t end,
+                     std::uint64_t synced = 0) {
+    for (std::uint64_t i = first; i < end; ++i) {
+      JournalRecord record = record_of(i);
+      writer.append(record);
+      if (i < synced) writer.sync();
+    }
+  }
+  /// Writes a journal of `records`, and returns its bytes.
+  std::string write(std::uint64_t records, std::uint64_t synced) const {
+    append(JournalWriter::create(path, kIdentity, kNever), 0, records, synced);
+    return bytes_of(path);
+  }
+
+  ScratchFolder folder;
+  std::filesystem::path path = folder / "a.journal";
+};
 
 }  // namespace
 
 TEST_CASE("a journal gives back what was appended") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  write_journal(path, 100, 3);
-  const JournalReader journal(path);
+  const JournalFile file;
+  const std::string bytes = file.write(100, 3);
+  const JournalReader journal(file.path);
   CHECK(journal.identity() == kIdentity);
   check_equal(journal.records(), 100);
   CHECK(journal.torn().empty());
-  CHECK(journal.whole_bytes() == std::filesystem::file_size(path));
-  CHECK(numbers_in(journal) == first_numbers(100));
+  CHECK(journal.whole_bytes() == bytes.size());
+  check_numbers(numbers_in(journal), 100);
 }
 
 TEST_CASE("a journal cut at any byte gives the records before, and goes on from them") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  write_journal(path, 12, 4);
-  const std::string whole = bytes_of(path);
+  const JournalFile file;
+  const std::string whole = file.write(12, 4);
   std::uint64_t most = 0;
   for (std::size_t bytes = 0; bytes < whole.size(); ++bytes) {
-    put_bytes(path, whole.substr(0, bytes));
-    const JournalReader journal(path);
+    put_bytes(file.path, whole.substr(0, bytes));
+    const JournalReader journal(file.path);
     const std::uint64_t records = journal.records();
     CHECK(records >= most);
     CHECK(records < 12);
     most = std::max(most, records);
-    CHECK(numbers_in(journal) == first_numbers(records));
+    check_numbers(numbers_in(journal), records);
     if (!journal.identity()) continue;
     CHECK(journal.identity() == kIdentity);
     CHECK(journal.torn().empty() == (journal.whole_bytes() == bytes));
-    {
-      JournalWriter writer = JournalWriter::resume(path, journal, kNever);
-      for (std::uint64_t i = records; i < 12; ++i) {
-        JournalRecord record = record_of(i);
-        writer.append(record);
-      }
-    }
-    CHECK(numbers_in(JournalReader(path)) == first_numbers(12));
+    JournalFile::append(JournalWriter::resume(file.path, journal, kNever), records, 12);
+    check_numbers(numbers_in(JournalReader(file.path)), 12);
   }
   check_equal(most, 11);
 }
 
 TEST_CASE("a byte flipped before what is known to be on the disk is refused and named") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  write_journal(path, 12, 11);
-  const std::string whole = bytes_of(path);
+  const JournalFile file;
+  const std::string whole = file.write(12, 11);
   const std::size_t last = whole.size() - 32 - 1 - 1 - 11;  // the record that says what is synced
   for (std::size_t at = 0; at < last; ++at) {
     for (const int bit : {0, 3, 7}) {
-      std::string bytes = whole;
-      bytes[at] = static_cast<char>(bytes[at] ^ 1 << bit);
-      put_bytes(path, bytes);
+      put_bytes(file.path, flipped(whole, at, bit));
       CAPTURE(at, bit);
-      CHECK_THROWS_AS(JournalReader(path), InputError);
+      CHECK_THROWS_AS(JournalReader(file.path), InputError);
     }
   }
-  std::string bytes = whole;
-  bytes[last - 1] = static_cast<char>(bytes[last - 1] ^ 1);
-  put_bytes(path, bytes);
-  check_refused([&] { return JournalReader(path); }, "a.journal: record 11 at byte");
+  put_bytes(file.path, flipped(whole, last - 1, 0));
+  check_refused([&] { return JournalReader(file.path); }, "a.journal: record 11 at byte");
 }
 
 TEST_CASE("a byte flipped after that leaves the records before it") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  write_journal(path, 12, 0);
-  const std::string whole = bytes_of(path);
+  const JournalFile file;
+  const std::string whole = file.write(12, 0);
   for (std::size_t at = 16; at < whole.size(); ++at) {
-    std::string bytes = whole;
-    bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-    put_bytes(path, bytes);
-    const JournalReader journal(path);
+    put_bytes(file.path, flipped(whole, at, 4));
+    const JournalReader journal(file.path);
     CAPTURE(at);
     CHECK(journal.records() < 12);
     CHECK(journal.whole_bytes() <= at);
     CHECK_FALSE(journal.torn().empty());
-    CHECK(numbers_in(journal) == first_numbers(journal.records()));
+    check_numbers(numbers_in(journal), journal.records());
   }
 }
 
-TEST_CASE("what is no journal, or one of another version, is refused") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  put_bytes(path, "a journal of another program");
-  CHECK_FALSE(is_journal(path));
-  CHECK_THROWS_AS(JournalReader(path), InputError);
-  put_bytes(path, "CLWYJRN");
-  CHECK(is_journal(path));
-  CHECK_FALSE(JournalReader(path).identity());
-  put_bytes(path, "CLWYJRX");
-  CHECK_THROWS_AS(JournalReader(path), InputError);
-  put_bytes(path, std::string("CLWYJRNL\1\0\0\0\0\0\0\0", 16));
-  check_refused([&] { return JournalReader(path); }, "journal of version 1 of another release");
-  put_bytes(path, std::string("CLWYJRNL\2\0\0\0\0\0\0\1", 16));
-  CHECK_THROWS_AS(JournalReader(path), InputError);
-  put_bytes(path, "");
-  CHECK_FALSE(is_journal(path));
-  CHECK_FALSE(JournalReader(path).identity());
-  CHECK_FALSE(is_journal(folder / "nothing"));
+TEST_CASE("what is no journal, or one of another version, is refused, and a begun one is empty") {
+  const JournalFile file;
+  CHECK_FALSE(is_journal(file.path));
+  const auto check = [&](const std::string& bytes, bool is_one, const char* words) {
+    put_bytes(file.path, bytes);
+    CHECK(is_journal(file.path) == is_one);
+    if (words != nullptr) {
+      check_refused<InputError>([&] { return JournalReader(file.path); }, words);
+    } else {
+      CHECK_FALSE(JournalReader(file.path).identity());
+    }
+  };
+  check("a journal of another program", false, "a.journal");
+  check("CLWYJRX", false, "a.journal");
+  check("CLWYJRN", true, nullptr);
+  check("", false, nullptr);
+  check({"CLWYJRNL\1\0\0\0\0\0\0\0", 16}, true, "journal of version 1 of another release");
+  check({"CLWYJRNL\2\0\0\0\0\0\0\1", 16}, true, "a.journal");
 }
 
 TEST_CASE("a journal is created only where no file is, and not through a link") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
-  put_bytes(folder / "precious", "precious");
-  std::filesystem::create_symlink("precious", path);
-  CHECK_THROWS_AS(JournalWriter::create(path, kIdentity, kNever), ResourceError);
-  check_equal(bytes_of(folder / "precious"), "precious");
+  const JournalFile file;
+  put_bytes(file.folder / "precious", "precious");
+  std::filesystem::create_symlink("precious", file.path);
+  CHECK_THROWS_AS(JournalWriter::create(file.path, kIdentity, kNever), ResourceError);
+  check_equal(bytes_of(file.folder / "precious"), "precious");
 }
 
 TEST_CASE("a payload is not read past its end") {
@@ -183,11 +178,10 @@ TEST_CASE("a payload is not read past its end") {
 }
 
 TEST_CASE("several threads append whole records") {
-  const ScratchFolder folder;
-  const auto path = folder / "a.journal";
+  const JournalFile file;
   {
-    JournalWriter writer = JournalWriter::create(path, kIdentity, 0);
-    std::vector<std::thread> threads;
+    JournalWriter writer = JournalWriter::create(file.path, kIdentity, 0);
+    std::vector<std::jthread> threads;
     for (std::uint64_t thread = 0; thread < 4; ++thread) {
       threads.emplace_back([&writer, thread] {
         for (std::uint64_t i = 0; i < 50; ++i) {
@@ -196,11 +190,10 @@ TEST_CASE("several threads append whole records") {
         }
       });
     }
-    for (std::thread& thread : threads) thread.join();
   }
-  std::vector<std::uint64_t> numbers = numbers_in(JournalReader(path));
-  std::sort(numbers.begin(), numbers.end());
-  CHECK(numbers == first_numbers(200));
+  std::vector<std::uint64_t> numbers = numbers_in(JournalReader(file.path));
+  std::ranges::sort(numbers);
+  check_numbers(numbers, 200);
 }
 
 TEST_CASE("the difference of two journals is named field by field") {

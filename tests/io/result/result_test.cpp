@@ -1,108 +1,134 @@
+// Results as they are written and read again.
 #include "io/result/result.hpp"
 
-#include <hdf5.h>
-
 #include <cmath>
-#include <utility>
-#include <vector>
 
-#include "clearway/error.hpp"
-#include "io/files/hdf5.hpp"
+#include "core/util/format.hpp"
 #include "io/result/answer.hpp"
-#include "io/result/check_results.hpp"
+#include "io/result/floor_facts.hpp"
+#include "io/result/sample_result.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/leaks_of_hdf5.hpp"
-#include "support/result_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
-TEST_CASE("a result is read as it was written") {
-  const ScratchFolder folder;
-  const bool first_pose = GENERATE(false, true);
-  const std::size_t count = GENERATE(0u, 1u, 3u, 65'535u, 65'536u, 65'537u, 200'000u);
-  ResultHeader header = sample_header(first_pose);
-  header.between_poses = GENERATE(false, true);
-  header.crs_wkt = GENERATE(std::string(), std::string("PROJCS[\"ETRS89 / UTM 32N — ä\"]"));
-  const Collisions rows = sample_rows(header, count);
-  write_result(folder / "out.h5", header, rows);
+namespace {
 
-  const ResultReader reader(folder / "out.h5");
-  CHECK(same_answer(reader.header(), header));
+/// Headers that ask for different tables and columns.
+std::vector<ResultHeader> asked_headers(std::uint64_t poses) {
+  std::vector<ResultHeader> all{sample_header(false), sample_header(true), full_header(poses)};
+  all[1].between_poses = true;
+  all[1].crs_wkt = "PROJCS[\"ETRS89 / UTM 32N — ä\"]";
+  all[1].clearance = 0.3;
+  all[1].ignore_boxes = all[2].ignore_boxes;
+  all[1].ignored = {12, {}, {5, 7}};
+  // Bodies without first poses are only those of clearances.
+  all.push_back(all[2]);
+  all[3].first_pose = false;
+  all[3].ignore_boxes.clear();
+  all[3].ignored.in_boxes.clear();
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("a result is read as it was written, and its bytes depend on nothing else") {
+  const std::size_t count = GENERATE(0u, 1u, 3u, 65'535u, 65'536u, 65'537u, 150'000u);
+  const std::size_t which = GENERATE(0u, 1u, 2u, 3u);
+  CAPTURE(count, which);
+  const SampleResult sample(asked_headers(std::max<std::size_t>(count, 1))[which], count);
+  sample.write();
+  CHECK(sample.is_read());
+  check_equal(sample.fault(), "");
+  const ResultReader reader(sample.path());
   CHECK(reader.collisions() == count);
-  CHECK(reader.name() == (folder / "out.h5").string());
-  CHECK(same_rows(read_rows(reader), rows));
+  CHECK(reader.clearances() == sample.near.size());
+  CHECK(reader.profile_rows() == sample.profile.size());
+  check_equal(reader.name(), sample.path().string());
+  CHECK(reader.column(&Collisions::body) == sample.rows.body);
+  const std::string bytes = bytes_of(sample.path());
+  for (const std::size_t step : {65'537u, 149'999u, 150'000u}) {
+    sample.write("another name.h5", step);
+    check_same(bytes_of(sample.path("another name.h5")), bytes);
+  }
 }
 
 TEST_CASE("a result is read by any range of rows") {
-  const ScratchFolder folder;
-  const ResultHeader header = sample_header(true);
-  const Collisions rows = sample_rows(header, 70'000);
-  write_result(folder / "out.h5", header, rows);
-  const ResultReader reader(folder / "out.h5");
-  for (const std::size_t first : {0u, 8'191u, 8'192u, 32'767u, 65'535u, 69'990u}) {
-    Collisions read;
-    RowHashes<Collisions> hashes;
-    reader.read(first, 10, read, hashes);
-    CHECK(same_rows(read, part_of(rows, first, 10)));
-  }
+  const SampleResult sample(sample_header(true), 70'000);
+  sample.write("out.h5", 7);
+  const ResultReader reader(sample.path());
   Collisions read;
   RowHashes<Collisions> hashes;
-  CHECK_THROWS_AS(reader.read(69'991, 10, read, hashes), std::logic_error);
-  CHECK(reader.column(&Collisions::source) == rows.source);
-  CHECK(reader.column(&Collisions::xyz) == rows.xyz);
-  CHECK(reader.column(&Collisions::first_pose) == rows.first_pose);
-}
-
-TEST_CASE("equal contents give equal bytes, however they were appended and named") {
-  const ScratchFolder folder;
-  const ResultHeader header = sample_header(GENERATE(false, true));
-  const Collisions rows = sample_rows(header, 150'000);
-  write_result(folder / "a.h5", header, rows, 150'000);
-  const std::string bytes = bytes_of(folder / "a.h5");
-  for (const std::size_t step : {7u, 8'192u, 65'537u, 149'999u}) {
-    write_result(folder / "another name.h5", header, rows, step);
-    CHECK(bytes_of(folder / "another name.h5") == bytes);
+  for (const std::size_t first : {0u, 8'191u, 8'192u, 32'767u, 65'535u, 69'990u}) {
+    reader.read(first, 10, read, hashes);
+    CHECK(same_table(read, part_of(sample.rows, first, 10)));
   }
+  CHECK_THROWS_AS(reader.read(69'991, 10, read, hashes), std::logic_error);
+  CHECK(reader.column(&Collisions::source) == sample.rows.source);
+  CHECK(reader.column(&Collisions::xyz) == sample.rows.xyz);
+  CHECK(reader.column(&Collisions::first_pose) == sample.rows.first_pose);
 }
 
-TEST_CASE("results of different queries differ in their bytes") {
-  const ScratchFolder folder;
-  const ResultHeader header = sample_header(false);
-  write_result(folder / "a.h5", header, {});
-  ResultHeader other = header;
-  SECTION("radius") { other.radius = std::nextafter(header.radius, 1.0); }
-  SECTION("between poses") { other.between_poses = true; }
-  write_result(folder / "b.h5", other, {});
-  CHECK(bytes_of(folder / "a.h5") != bytes_of(folder / "b.h5"));
-}
+namespace {
+
+/// A writer of a result with these numbers of rows.
+struct Writer {
+  Writer(const ResultHeader& header, std::uint64_t collisions, std::uint64_t clearances)
+      : writer(folder / "out.h5", header, collisions, clearances) {}
+
+  template <typename Rows>
+  void check_refused(const Rows& rows) {
+    CHECK_THROWS_AS(writer.append(rows), std::logic_error);
+  }
+
+  ScratchFolder folder;
+  ResultWriter writer;
+};
+
+}  // namespace
 
 TEST_CASE("a writer refuses rows that do not belong to its result") {
-  const ScratchFolder folder;
-  const ResultHeader header = sample_header(true);
-  const Collisions rows = sample_rows(header, 4);
-  ResultWriter writer(folder / "out.h5", header, 3);
-  CHECK_THROWS_AS(writer.append(rows), std::logic_error);
-  Collisions two = part_of(rows, 0, 2);
-  two.first_pose.clear();
-  CHECK_THROWS_AS(writer.append(two), std::logic_error);
-  writer.append(part_of(rows, 0, 2));
-  CHECK_THROWS_AS(writer.append(part_of(rows, 0, 1)), std::logic_error);
-  CHECK_THROWS_AS(writer.finish(), std::logic_error);
+  const SampleResult sample(full_header(3), 4);
+  const Collisions two = part_of(sample.rows, 0, 2);
+  Writer one(sample.header, 3, 2);
+  one.check_refused(sample.rows);
+  Collisions changed = two;
+  changed.first_pose.clear();
+  one.check_refused(changed);
+  changed = two;
+  changed.body.clear();
+  one.check_refused(changed);
+  one.check_refused(part_of(sample.near, 0, 1));  // clearances before the collisions
+  one.check_refused(sample.profile);
+  one.writer.append(two);
+  one.check_refused(part_of(sample.rows, 0, 1));
+  CHECK_THROWS_AS(one.writer.finish(), std::logic_error);
+  one.writer.append(part_of(sample.rows, 2, 1));
+  one.check_refused(part_of(sample.near, 0, 3));
+  one.writer.append(part_of(sample.near, 1, 1));
+  one.check_refused(part_of(sample.near, 0, 1));
+  CHECK_THROWS_AS(one.writer.finish(), std::logic_error);
+  one.writer.append(part_of(sample.near, 2, 1));
+  ProfileRows poses = sample.profile;
+  poses.source.pop_back();
+  one.check_refused(poses);
+  one.writer.append(part_of(sample.profile, 0, 2));
+  one.check_refused(part_of(sample.profile, 0, 2));
+  CHECK_THROWS_AS(one.writer.finish(), std::logic_error);
+
+  Writer plain(sample_header(true), 2, 0);
+  plain.check_refused(two);  // of bodies, and with classes
+  plain.check_refused(Clearances{});
+  plain.check_refused(ProfileRows{});
 }
 
-TEST_CASE("a result whose writer did not finish is refused") {
+TEST_CASE("a result that is not finished, or has no folder, is refused by name") {
   const ScratchFolder folder;
   { ResultWriter writer(folder / "out.h5", sample_header(false), 0); }
   check_refused<InputError>([&] { return ResultReader(folder / "out.h5"); }, "out.h5 ... complete");
-}
-
-TEST_CASE("a folder that is not there is a resource error that names the file") {
-  const ScratchFolder folder;
-  CHECK_THROWS_AS(ResultWriter(folder / "no/out.h5", sample_header(false), 0), ResourceError);
-  check_refused([&] { return ResultWriter(folder / "no/out.h5", sample_header(false), 0); },
-                "no/out.h5");
+  check_refused<ResourceError>(
+      [&] { return ResultWriter(folder / "no/out.h5", sample_header(false), 0); }, "no/out.h5");
 }
 
 TEST_CASE("a warning that is said twice names the stretches of both") {
@@ -121,131 +147,38 @@ TEST_CASE("a warning that is said twice names the stretches of both") {
   CHECK(warnings[1].stretches.empty());
 }
 
-// Results that ignore points.
-namespace {
-
-ResultHeader ignoring_header() {
-  ResultHeader header = sample_header(false);
-  header.ignore_classes = {2, 7};
-  header.ignore_boxes = {{{-1, -2, -3}, {4, 5, 6}}, {{0, 0, 0}, {1, 1, 1}}};
-  header.ignored = {1234, {1000, 200}, {0, 34}};
-  header.classes_hash = 0x123456789abcdef0;
-  return header;
-}
-
-}  // namespace
-
-TEST_CASE("a result keeps what was ignored") {
-  const ScratchFolder folder;
-  ResultHeader header = ignoring_header();
-  SECTION("classes and boxes") {}
-  SECTION("classes") {
-    header.ignore_boxes.clear();
-    header.ignored.in_boxes.clear();
+TEST_CASE("a vehicle's result keeps the floor of each body, which outputs say in words") {
+  SampleResult vehicle(full_header(10), 10);
+  vehicle.header.body_floors = {0.25, std::nullopt, -0.5};
+  {
+    ResultWriter writer(vehicle.path(), vehicle.header, 0);
+    writer.append(vehicle.profile);
+    ResultFindings findings;
+    findings.floor_colliding = 12;
+    writer.finish(findings);
   }
-  SECTION("boxes") {
-    header.ignore_classes.clear();
-    header.ignored.of_classes.clear();
+  const ResultReader result(vehicle.path());
+  CHECK(same_answer(result.header(), vehicle.header));
+  Answer answer = counted_answer(result);
+  CHECK(answer.body_floors == vehicle.header.body_floors);
+  const auto words = [&] { return floor_words(floor_json(answer), "m"); };
+  check_equal(words(),
+              "the floors of the vehicle's bodies (front bogie 0.25 m, body none, back -0.5 m)");
+  answer.body_floors = {0.25, 0.25, 0.25};
+  check_equal(words(), "0.25 m of the vehicle");
+  answer.budget = ErrorBudget{.scan = 0.01, .sigmas = 3};
+  const std::string clear = format_brief(answer.budget->clear());
+  check_equal(words(), "0.25 m of the vehicle (" + format_brief(0.25 - answer.budget->clear()) +
+                           " m with the errors)");
+  answer.body_floors.back() = 0.3;
+  check_equal(words(),
+              "the floors of the vehicle's bodies (front bogie 0.25 m, body 0.25 m, back 0.3 "
+              "m; with the errors " +
+                  clear + " m lower)");
+  answer.budget.reset();
+  for (int i = 0; i < 5; ++i) {
+    answer.bodies.push_back("wagon " + std::to_string(i));
+    answer.body_floors.push_back(i < 3 ? std::optional(0.1 * (i + 1)) : std::nullopt);
   }
-  write_result(folder / "a.h5", header, sample_rows(header, 10));
-  CHECK(same_answer(ResultReader(folder / "a.h5").header(), header));
-}
-
-TEST_CASE("damage to what was ignored is noticed") {
-  const ScratchFolder folder;
-  const ResultHeader header = ignoring_header();
-  write_result(folder / "a.h5", header, sample_rows(header, 10));
-  const std::string bytes = bytes_of(folder / "a.h5");
-  const LeaksOfHdf5 of_damaged_files;
-  std::uint64_t unseen = 0;
-  for (std::size_t at = 0; at < bytes.size(); ++at) {
-    std::string changed = bytes;
-    changed[at] = static_cast<char>(changed[at] ^ 0x20);
-    put_bytes(folder / "b.h5", changed);
-    try {
-      unseen += !same_answer(ResultReader(folder / "b.h5").header(), header);
-    } catch (const InputError&) {
-    }
-  }
-  check_equal(unseen, 0);
-}
-
-TEST_CASE("results that ignore other points answer other questions") {
-  const ResultHeader a = ignoring_header();
-  ResultHeader b = a;
-  CHECK(query_differences(a, b).empty());
-  std::string what = "ignored points";
-  SECTION("class") { b.ignore_classes = {2}; }
-  SECTION("box") { b.ignore_boxes.pop_back(); }
-  SECTION("other classes of the same points") {
-    b.classes_hash = 7;
-    what = "classes";
-  }
-  const auto differences = query_differences(a, b);
-  REQUIRE(differences.size() == 1);
-  check_equal(differences[0].what, what);
-}
-
-namespace {
-
-ResultHeader header_of_3() {
-  ResultHeader header = sample_header(false);
-  header.poses = 3;
-  header.profile = 0.5;
-  return header;
-}
-
-/// Replaces an attribute behind the reader's back.
-template <typename Write>
-void replace(const std::filesystem::path& path, const char* name, Write write) {
-  const hdf5::Id file(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open");
-  REQUIRE(H5Adelete(file.get(), name) >= 0);
-  write(file);
-}
-
-}  // namespace
-
-TEST_CASE("results of other versions are refused") {
-  const ScratchFolder folder;
-  write_result(folder / "a.h5", header_of_3(), {}, 1000, {}, sample_profile(header_of_3()));
-  const auto version = GENERATE(as<std::uint32_t>(), 0, 5, 7, 0xffffffff);
-  replace(folder / "a.h5", "version",
-          [&](const hdf5::Id& file) { hdf5::write_number(file, "version", version); });
-  check_refused(
-      [&] { return ResultReader(folder / "a.h5"); },
-      "is a result of version " + std::to_string(version) + " of another release; run it again");
-}
-
-TEST_CASE("malformed attributes of a profile and a model box are refused") {
-  const ScratchFolder folder;
-  write_result(folder / "a.h5", header_of_3(), {}, 1000, {}, sample_profile(header_of_3()));
-  std::string expected;
-  SECTION("a negative length") {
-    replace(folder / "a.h5", "profile",
-            [](const hdf5::Id& file) { hdf5::write_number(file, "profile", -0.5); });
-    expected = "'profile'";
-  }
-  SECTION("no number") {
-    replace(folder / "a.h5", "profile",
-            [](const hdf5::Id& file) { hdf5::write_number(file, "profile", std::nan("")); });
-    expected = "'profile'";
-  }
-  SECTION("more poses than rows") {
-    replace(folder / "a.h5", "poses",
-            [](const hdf5::Id& file) { hdf5::write_number(file, "poses", std::uint64_t{4}); });
-    expected = "one for each of 4 poses";
-  }
-  SECTION("a box from high to low") {
-    replace(folder / "a.h5", "model_box", [](const hdf5::Id& file) {
-      hdf5::write_attribute<double>(file, "model_box", std::vector<double>{0, 0, 1, 0, 0, 0}, 3);
-    });
-    expected = "'model_box'";
-  }
-  SECTION("a box of five numbers") {
-    replace(folder / "a.h5", "model_box", [](const hdf5::Id& file) {
-      hdf5::write_attribute<double>(file, "model_box", std::vector<double>{0, 0, 1, 0, 0});
-    });
-    expected = "model_box";
-  }
-  check_refused([&] { return ResultReader(folder / "a.h5"); }, expected);
+  check_equal(words(), "the floors of the vehicle's bodies (0.1 m to 0.3 m, 2 bodies without)");
 }

@@ -1,254 +1,211 @@
-// Stores and results whose checksums hold, but which no Clearway wrote.
+// Stores that are damaged, and stores whose checksums hold, but which no Clearway wrote.
 #include <hdf5.h>
 
-#include "clearway/error.hpp"
-#include "io/files/hdf5.hpp"
+#include <functional>
+
+#include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
-#include "support/classed_scans.hpp"
+#include "support/change_hdf5.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
-#include "support/origins.hpp"
-#include "support/result_fixture.hpp"
+#include "support/store_fixture.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-struct SmallStore {
-  SmallStore() {
-    write_las(folder / "a.las", cube_cloud(300, -4000, 4000, 3));
-    convert_quietly(conversion_of({folder / "a.las"}, path));
+/// Everything that a store holds, once it is found sound.
+struct Content {
+  explicit Content(const std::filesystem::path& path) {
+    const StoreReader store(path);
+    const auto faults = faults_of(store);
+    if (!faults.empty()) throw InputError(faults[0]);
+    const StoreMetadata& m = store.metadata();
+    numbers = {m.point_count, m.input_points, m.cell_points, m.points_hash, store.fingerprint()};
+    texts = {m.layout, m.options, to_string(m.unit), m.crs_wkt, codes_of(m.warnings)};
+    lengths = {m.height_unit, m.steps[0], m.steps[1], m.steps[2]};
+    quantisation = m.quantisation;
+    sources = m.sources;
+    source_points = m.source_points;
+    classes = m.classes;
+    origins = m.origins;
+    withheld = m.withheld;
+    near = m.near;
+    top.assign(store.top_tree().begin(), store.top_tree().end());
+    points = stored_points(store);
+    if (classes) class_of = classes_by_source(store);
+    if (origins) origin_of = origins_by_source(store);
   }
-  hdf5::Id open_to_change() const {
-    return {H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "open"};
-  }
-  std::string refusal() const {
-    try {
-      const StoreReader store(path);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return {};
-  }
+  friend bool operator==(const Content&, const Content&) = default;
 
-  ScratchFolder folder;
-  std::filesystem::path path = folder / "a.h5";
+  std::vector<std::uint64_t> numbers;
+  std::vector<std::string> texts;
+  std::vector<double> lengths;
+  Quantisation quantisation;
+  std::vector<SourceFile> sources;
+  std::vector<std::uint64_t> source_points;
+  std::optional<StoreClasses> classes;
+  std::optional<StoreOrigins> origins;
+  std::optional<StoreWithheld> withheld;
+  std::optional<StoreCorridor> near;
+  std::vector<TopNode> top;
+  std::vector<StoredPoint> points;
+  std::vector<std::uint8_t> class_of;
+  std::vector<std::optional<OriginQuanta>> origin_of;
 };
 
-/// Adds a dataset of these extents, chunked as given, in which nothing is written.
-void put_empty_dataset(const hdf5::Id& file, const char* name, hid_t type, hsize_t rows,
-                       hsize_t chunk_rows, bool checksum) {
-  REQUIRE(H5Ldelete(file.get(), name, H5P_DEFAULT) >= 0);
-  const hdf5::Id space(H5Screate_simple(1, &rows, nullptr), H5Sclose, name);
-  const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
-  hdf5::check(H5Pset_chunk(list.get(), 1, &chunk_rows), name);
-  if (checksum) hdf5::check(H5Pset_fletcher32(list.get()), name);
-  const hdf5::Id dataset(
-      H5Dcreate2(file.get(), name, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
-      H5Dclose, name);
+/// The content of a file, or nothing where it is refused.
+std::optional<Content> content_of(const std::filesystem::path& path) {
+  try {
+    return Content(path);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
+
+/// Two scans near a path, with classes, withheld points and origins, of which a warning is given.
+struct WholeScans : Conversion {
+  WholeScans() {
+    LasBytes las;
+    las.minor = 4;
+    las.format = 6;
+    las.scale = {0.001, 0.001, 0.001};
+    las.points = cube_cloud(100, -4000, 4000, 3);
+    for (std::size_t i = 0; i < las.points.size(); ++i) {
+      las.bytes_of_class.push_back(static_cast<std::uint8_t>(i % 9));
+      las.bytes_of_flags.push_back(i % 11 == 1 ? 4 : 0);
+    }
+    add("a.las", las.build());
+    add("b.las", las.build());
+    options.origins = folder.write("o.csv", "first,x,y,z\n0,1,2,3\n50,4,5,6\n100,-1,0,9\n");
+    options.near = folder.write("path.txt", "1 0 0 100 0 1 0 -200 0 0 1 0 0 0 0 1\n");
+    options.within = 5;
+  }
+};
+
+struct WholeStore : WholeScans {
+  WholeStore() { REQUIRE(content.points.size() > 64); }
+
+  std::string bytes = converted_bytes();
+  Content content{options.output};
+};
 
 }  // namespace
 
 TEST_CASE(
-    "a dataset that declares more rows than the file holds is refused before memory is taken") {
-  const SmallStore store;
-  const hsize_t rows = GENERATE(hsize_t{1} << 20, hsize_t{1} << 40, (hsize_t{1} << 62) + 1);
-  put_empty_dataset(store.open_to_change(), "cells/count", H5T_STD_U32LE, rows, 1024, true);
-  CHECK_THAT(store.refusal(), Contains("cells") || Contains("count"));
-  check_says(store.refusal(), store.path.string() + " ... room");
-}
-
-TEST_CASE("storage that Clearway does not write is refused") {
-  const SmallStore store;
-  SECTION("no checksum") {
-    put_empty_dataset(store.open_to_change(), "cells/count", H5T_STD_U32LE, 5, 5, false);
-    check_says(store.refusal(), "fletcher32");
-  }
-  SECTION("a chunk far larger than the dataset") {
-    const hdf5::Id file = store.open_to_change();
-    REQUIRE(H5Ldelete(file.get(), "sources/bytes", H5P_DEFAULT) >= 0);
-    const hsize_t rows = 1, most = hsize_t{1} << 28;
-    const hdf5::Id space(H5Screate_simple(1, &rows, &most), H5Sclose, "space");
-    const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "list");
-    hdf5::check(H5Pset_chunk(list.get(), 1, &most), "chunk");
-    hdf5::check(H5Pset_fletcher32(list.get()), "checksum");
-    H5Dclose(H5Dcreate2(file.get(), "sources/bytes", H5T_STD_U64LE, space.get(), H5P_DEFAULT,
-                        list.get(), H5P_DEFAULT));
-  }
-  SECTION("numbers in another file") {
-    const hdf5::Id file = store.open_to_change();
-    REQUIRE(H5Ldelete(file.get(), "sources/bytes", H5P_DEFAULT) >= 0);
-    const hsize_t rows = 1;
-    const hdf5::Id space(H5Screate_simple(1, &rows, nullptr), H5Sclose, "space");
-    const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "list");
-    hdf5::check(H5Pset_external(list.get(), "/etc/passwd", 0, 8), "external");
-    H5Dclose(H5Dcreate2(file.get(), "sources/bytes", H5T_STD_U64LE, space.get(), H5P_DEFAULT,
-                        list.get(), H5P_DEFAULT));
-  }
-  check_says(store.refusal(), store.path.string());
-}
-
-TEST_CASE("links lead nowhere") {
-  const SmallStore store, other;
-  const std::string name = GENERATE("cells", "cells/count", "points/x", "sources", "blocks/box");
-  CAPTURE(name);
-  {
-    const hdf5::Id file = store.open_to_change();
-    REQUIRE(H5Ldelete(file.get(), name.c_str(), H5P_DEFAULT) >= 0);
-    if (GENERATE(true, false)) {
-      hdf5::check(H5Lcreate_external(other.path.c_str(), name.c_str(), file.get(), name.c_str(),
-                                     H5P_DEFAULT, H5P_DEFAULT),
-                  "link");
-    } else {
-      hdf5::check(H5Lcreate_soft("/tree/nodes", file.get(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                  "link");
-    }
-  }
-  check_says(store.refusal(), "found a link");
-}
-
-TEST_CASE("HDF5 does not see a superblock that is not Clearway's") {
-  const SmallStore store;
-  std::string bytes = bytes_of(store.path);
-  SECTION("another version") {
-    bytes[8] = 0;
-    put_bytes(store.path, bytes);
-    check_says(store.refusal(), "superblock of version 0");
-  }
-  SECTION("open when its writer was killed") {
-    bytes[11] = 1;
-    put_bytes(store.path, bytes);
-    check_says(store.refusal(), "not closed");
-  }
-  SECTION("bytes behind the end") {
-    put_bytes(store.path, bytes + "x");
-    check_says(store.refusal(), "expected " + std::to_string(bytes.size()));
-  }
-  SECTION("a block of another program before it") {
-    put_bytes(store.path, std::string(512, 'x') + bytes);
-    check_says(store.refusal(), "not an HDF5 file");
-  }
-}
-
-TEST_CASE("any stretch of a store or result that turns to zeros is noticed or changes nothing") {
+    "a store with a changed byte, a stretch of zeros or a lost end is refused, or is the same") {
   const LeaksOfHdf5 leaks;
-  const SmallStore store;
-  const std::uint64_t fingerprint = StoreReader(store.path).fingerprint();
-  const auto points = stored_points(StoreReader(store.path));
-  const std::string bytes = bytes_of(store.path);
-  const std::size_t length = GENERATE(64, 512, 4096);
-  for (std::size_t at = 0; at < bytes.size(); at += length / 4) {
-    std::string zeroed = bytes;
-    const std::size_t end = std::min(bytes.size(), at + length);
-    std::fill(zeroed.begin() + static_cast<std::ptrdiff_t>(at),
-              zeroed.begin() + static_cast<std::ptrdiff_t>(end), '\0');
-    put_bytes(store.path, zeroed);
-    INFO("bytes " << at << " to " << end);
-    try {
-      const StoreReader read(store.path);
-      const auto read_points = stored_points(read);
-      CHECK(read.fingerprint() == fingerprint);
-      CHECK((read_points == points));
-    } catch (const InputError&) {
-    }
-  }
-}
-
-TEST_CASE("rows of a result that turn to zeros, checksum and all, are noticed") {
-  const LeaksOfHdf5 leaks;
-  const ScratchFolder folder;
-  ResultHeader header = sample_header(true);
-  header.clearance = 0.5;
-  const Collisions rows = sample_rows(header, 50);
-  const Clearances clearance_rows = sample_clearances(header, 50);
-  write_result(folder / "out.h5", header, rows, 1000, clearance_rows);
-  const std::string bytes = bytes_of(folder / "out.h5");
-  std::size_t noticed = 0;
-  for (std::size_t at = 0; at < bytes.size(); at += 16) {
-    std::string zeroed = bytes;
-    const std::size_t end = std::min(bytes.size(), at + 1400);
-    std::fill(zeroed.begin() + static_cast<std::ptrdiff_t>(at),
-              zeroed.begin() + static_cast<std::ptrdiff_t>(end), '\0');
-    put_bytes(folder / "out.h5", zeroed);
-    INFO("bytes " << at << " to " << end);
-    try {
-      const ResultReader reader(folder / "out.h5");
-      const Collisions read = read_rows(reader);
-      RowStream<Clearances> clearances(reader);
-      Clearances near, none;
-      clearances.read(near);
-      clearances.read(none);  // the hash is checked at the end
-      CHECK(near.pose == clearance_rows.pose);
-      CHECK(near.xyz == clearance_rows.xyz);
-      CHECK(same_rows(read, rows));
-    } catch (const InputError&) {
-      ++noticed;
-    }
-  }
-  CHECK(noticed > 100);
-}
-
-// Stores with classes, damaged byte by byte.
-
-TEST_CASE("damaged classes are refused, by who asks for them and by verify") {
-  const ScratchFolder folder;
-  const auto points = cube_cloud(300, -4000, 4000, 3);
-  write_classed(folder / "a.las", points, random_classes(points.size(), 9));
-  convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
-  const auto expected = classes_by_source(StoreReader(folder / "a.h5"));
-  const std::string bytes = bytes_of(folder / "a.h5");
-  const LeaksOfHdf5 of_damaged_files;
-  std::uint64_t unseen = 0;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
+  const WholeStore store;
+  const std::string& bytes = store.bytes;
+  std::size_t refused = 0, tried = 0;
+  const auto check = [&](const std::string& changed, std::size_t at) {
+    put_bytes(store.options.output, changed);
+    const std::optional<Content> content = content_of(store.options.output);
+    refused += content ? 0 : 1;
+    ++tried;
+    if (content && *content != store.content)
+      FAIL_CHECK("a change at byte " << at << " is not seen");
+  };
+  for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string changed = bytes;
-    changed[at] = static_cast<char>(changed[at] ^ 0x10);
-    put_bytes(folder / "b.h5", changed);
-    try {
-      const StoreReader store(folder / "b.h5");
-      if (!faults_of(store).empty()) continue;
-      // A change that is not noticed must not change what is read.
-      unseen += !store.has_classes() || classes_by_source(store) != expected;
-    } catch (const InputError&) {
+    changed[at] = static_cast<char>(bytes[at] ^ (at % 3 == 0 ? 0xff : 1 << (at % 8)));
+    check(changed, at);
+  }
+  CHECK(refused > tried / 3);
+  for (const std::size_t length : {64, 512, 4096}) {
+    for (std::size_t at = 0; at < bytes.size(); at += length / 2) {
+      const std::size_t zeros = std::min(length, bytes.size() - at);
+      check(std::string(bytes).replace(at, zeros, zeros, '\0'), at);
     }
   }
-  check_equal(unseen, 0);
+  refused = tried = 0;
+  for (std::size_t size = 0; size < bytes.size(); size += size < 100 ? 1 : 97) {
+    check(bytes.substr(0, size), size);
+  }
+  check(bytes.substr(0, bytes.size() - 1), bytes.size() - 1);
+  CHECK(refused == tried);
+  put_bytes(store.options.output, bytes);
+  CHECK(content_of(store.options.output) == store.content);
 }
 
-// Stores with origins, damaged byte by byte.
+namespace {
 
-TEST_CASE("damaged origins are refused, by who asks for them and by verify") {
-  const ScratchFolder folder;
-  const auto points = cube_cloud(300, -4000, 4000, 3);
-  write_las(folder / "a.las", points, {{0.001, 0.001, 0.001}, {0, 0, 0}});
-  put_bytes(folder / "o.csv", "first,x,y,z\n0,1,2,3\n100,4,5,6\n200,-1,0,9\n");
-  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
-  options.origins = folder / "o.csv";
-  convert_quietly(options);
-  const StoreReader sound(folder / "a.h5");
-  const auto expected = origins_by_source(sound);
-  const std::string bytes = bytes_of(folder / "a.h5");
-  const LeaksOfHdf5 of_damaged_files;
-  std::uint64_t unseen = 0, refused = 0;
-  for (std::size_t at = 0; at < bytes.size(); at += 3) {
-    std::string changed = bytes;
-    changed[at] = static_cast<char>(changed[at] ^ 0x10);
-    put_bytes(folder / "b.h5", changed);
-    try {
-      const StoreReader store(folder / "b.h5");
-      if (!faults_of(store).empty()) {
-        ++refused;
-        continue;
-      }
-      // A change that is not noticed must not change what is read.
-      unseen += !store.has_origins() || origins_by_source(store) != expected ||
-                store.metadata().origins != sound.metadata().origins;
-    } catch (const InputError&) {
-      ++refused;
-    }
+using Change = std::function<void(const std::filesystem::path&)>;
+
+/// Replaces a dataset by one in which nothing is written. rows: its extent, which may grow to
+/// `most`. set: its properties.
+Change empty_dataset(const char* name, hid_t type, hsize_t rows, hsize_t most,
+                     const std::function<void(hid_t list)>& set) {
+  return [=](const std::filesystem::path& path) {
+    remove_link(path, name);
+    const hdf5::Id space(H5Screate_simple(1, &rows, &most), H5Sclose, name);
+    const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, name);
+    set(list.get());
+    const hdf5::Id file = open_to_change(path);
+    H5Dclose(H5Dcreate2(file.get(), name, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT));
+  };
+}
+
+std::function<void(hid_t)> chunks_of(hsize_t rows, bool checksum = true) {
+  return [=](hid_t list) {
+    hdf5::check(H5Pset_chunk(list, 1, &rows), "chunk");
+    if (checksum) hdf5::check(H5Pset_fletcher32(list), "checksum");
+  };
+}
+
+Change link_instead(const std::string& name, bool external) {
+  return [=](const std::filesystem::path& path) {
+    remove_link(path, name);
+    const hdf5::Id file = open_to_change(path);
+    const auto added = external ? H5Lcreate_external(path.c_str(), "/tree/nodes", file.get(),
+                                                     name.c_str(), H5P_DEFAULT, H5P_DEFAULT)
+                                : H5Lcreate_soft("/tree/nodes", file.get(), name.c_str(),
+                                                 H5P_DEFAULT, H5P_DEFAULT);
+    hdf5::check(added, "link");
+  };
+}
+
+Change other_bytes(const std::function<std::string(std::string)>& change) {
+  return [=](const std::filesystem::path& path) { put_bytes(path, change(bytes_of(path))); };
+}
+
+}  // namespace
+
+TEST_CASE("a store that HDF5 can read, but Clearway did not write, is refused with the reason") {
+  const WholeStore store;
+  const auto check = [&](const std::string& words, const Change& change) {
+    INFO(words);
+    put_bytes(store.options.output, store.bytes);
+    change(store.options.output);
+    check_refused<InputError>([&] { StoreReader{store.options.output}; },
+                              store.options.output.string() + " ... " + words);
+  };
+  // More rows than the file holds are refused before memory is taken.
+  for (const hsize_t rows : {hsize_t{1} << 20, hsize_t{1} << 40, (hsize_t{1} << 62) + 1}) {
+    check("room", empty_dataset("cells/count", H5T_STD_U32LE, rows, rows, chunks_of(1024)));
   }
-  check_equal(unseen, 0);
-  CHECK(refused > 0);
+  check("fletcher32", empty_dataset("cells/count", H5T_STD_U32LE, 5, 5, chunks_of(5, false)));
+  const hsize_t large = hsize_t{1} << 28;
+  check("", empty_dataset("sources/bytes", H5T_STD_U64LE, 2, large, chunks_of(large)));
+  check("", empty_dataset("sources/bytes", H5T_STD_U64LE, 2, 2, [](hid_t list) {
+          hdf5::check(H5Pset_external(list, "/etc/passwd", 0, 16), "external");
+        }));
+  for (const char* name : {"cells", "cells/count", "points/x", "sources", "blocks/box"}) {
+    for (const bool external : {false, true}) check("found a link", link_instead(name, external));
+  }
+  check("superblock of version 0", other_bytes([](std::string bytes) {
+          bytes[8] = 0;
+          return bytes;
+        }));
+  // Open when its writer was killed.
+  check("not closed", other_bytes([](std::string bytes) {
+          bytes[11] = 1;
+          return bytes;
+        }));
+  check("expected " + std::to_string(store.bytes.size()),
+        other_bytes([](const std::string& bytes) { return bytes + "x"; }));
+  check("not an HDF5 file",
+        other_bytes([](const std::string& bytes) { return std::string(512, 'x') + bytes; }));
 }

@@ -121,42 +121,27 @@ void check_against_hdf5(PackedFile& file, const std::vector<Value>& values, unsi
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("packed bytes of every width are those of HDF5", "", std::int32_t, std::uint64_t,
-                   std::uint8_t) {
+TEMPLATE_TEST_CASE("packed bytes of every width and at its limits are those of HDF5", "",
+                   std::int32_t, std::uint64_t, std::uint8_t) {
+  using Unsigned = std::make_unsigned_t<TestType>;
+  using Limits = std::numeric_limits<TestType>;
+  constexpr unsigned kBits = kValueBits<TestType>;
   PackedFile file;
-  for (unsigned bits = 0; bits <= kValueBits<TestType>; ++bits) {
+  for (unsigned bits = 0; bits <= kBits; ++bits) {
     const auto span = span_of_bits<TestType>(bits, bits + 1);
     for (const std::size_t count : {2u, 7u, 64u, 1000u}) {
       check_against_hdf5(file, values_of_span<TestType>(count, span, count + bits), bits);
     }
-  }
-}
-
-TEMPLATE_TEST_CASE("packed bytes of the widest spans are those of HDF5", "", std::int32_t,
-                   std::uint64_t, std::uint8_t) {
-  PackedFile file;
-  constexpr auto kMost = std::numeric_limits<std::make_unsigned_t<TestType>>::max();
-  for (const unsigned below : {0u, 1u, 2u, 3u, 4u}) {
-    const auto span = static_cast<std::make_unsigned_t<TestType>>(kMost - below);
-    check_against_hdf5(file, values_of_span<TestType>(100, span, below), kValueBits<TestType>);
-  }
-}
-
-TEMPLATE_TEST_CASE("packed bytes next to a power of two are those of HDF5", "", std::int32_t,
-                   std::uint64_t, std::uint8_t) {
-  using Unsigned = std::make_unsigned_t<TestType>;
-  PackedFile file;
-  for (unsigned bits = 2; bits < kValueBits<TestType>; ++bits) {
+    if (bits < 2 || bits == kBits) continue;
     const auto power = static_cast<Unsigned>(Unsigned{1} << bits);
     const auto less = static_cast<Unsigned>(power - 1);
     check_against_hdf5(file, values_of_span<TestType>(65, less, bits), bits);
     check_against_hdf5(file, values_of_span<TestType>(65, power, bits), bits + 1);
   }
-}
-
-TEMPLATE_TEST_CASE("a packed chunk of one value is that of HDF5", "", std::int32_t, std::uint64_t,
-                   std::uint8_t) {
-  PackedFile file;
-  check_against_hdf5<TestType>(file, {std::numeric_limits<TestType>::min()}, 0);
-  check_against_hdf5<TestType>(file, {std::numeric_limits<TestType>::max()}, 0);
+  for (const unsigned below : {0u, 1u, 2u, 3u, 4u}) {
+    const auto span = static_cast<Unsigned>(std::numeric_limits<Unsigned>::max() - below);
+    check_against_hdf5(file, values_of_span<TestType>(100, span, below), kBits);
+  }
+  check_against_hdf5<TestType>(file, {Limits::min()}, 0);
+  check_against_hdf5<TestType>(file, {Limits::max()}, 0);
 }

@@ -1,5 +1,5 @@
 #include <cmath>
-#include <cstring>
+#include <functional>
 
 #include "clearway/error.hpp"
 #include "io/result/export/export_scan_records.hpp"
@@ -35,13 +35,11 @@ struct Scans {
     }
     rows.source = {1, 3, 4};
     rows.first_pose = {9, 0, 41};
-    for (const auto& [x, y, z] : {first.points[1], first.points[0], Quantum{7003, 4, 5}}) {
+    for (const auto& [x, y, z] : {first.points[1], first.points[0], std::array{7003, 4, 5}}) {
       rows.xyz.push_back(position(header.quantisation, x, y, z));
     }
     clearances = {{3, 4, 5}, {rows.xyz[1], rows.xyz[2], {}}, {0.25, 0.0625, 0.375}, {1, 2, 3}};
   }
-
-  using Quantum = std::array<std::int32_t, 3>;
 
   std::string exported(const std::string& name = "out.las") const {
     std::filesystem::create_directory(folder / "scans");
@@ -61,66 +59,37 @@ struct Scans {
   Clearances clearances;
 };
 
-template <typename Value>
-Value record_value_at(const std::string& bytes, std::size_t at) {
-  REQUIRE(at + sizeof(Value) <= bytes.size());
-  Value value;
-  std::memcpy(&value, bytes.data() + at, sizeof value);
-  return value;
-}
-
 }  // namespace
 
-TEST_CASE("records of scans are copied with all their bytes") {
-  const Scans scans;
+TEST_CASE("records of scans are copied with all their bytes, before pose, depth and distance") {
+  Scans scans;
+  const bool depth = GENERATE(false, true);
+  if (depth) add_sample_depths(scans.header, scans.rows);
+  const std::size_t record = kOwn + (depth ? 28 : 12);
   const std::string bytes = scans.exported();
-  const auto points = record_value_at<std::uint32_t>(bytes, 96);
-  check_equal(record_value_at<std::uint8_t>(bytes, 25), 4);
-  check_equal(record_value_at<std::uint16_t>(bytes, 6), 1);  // adjusted GPS time
-  check_equal(record_value_at<std::uint8_t>(bytes, 104), 1);
-  REQUIRE(record_value_at<std::uint16_t>(bytes, 105) == kOwn + 12);
-  check_equal(record_value_at<std::uint32_t>(bytes, 107), 3);
-  check_equal(record_value_at<std::uint32_t>(bytes, 111 + 4), 3);  // 'r': all are second returns
-  check_equal(record_value_at<std::uint64_t>(bytes, 247), 3);
-  REQUIRE(bytes.size() == points + 3 * (kOwn + 12));
-  const std::string own = scans.first.build().substr(227 + kOwn, kOwn);
-  CHECK(bytes.substr(points, kOwn) == own);
-  const std::array<std::uint32_t, 3> poses{9, 0, 41};
+  const auto points = value_at<std::uint32_t>(bytes, 96);
+  check_equal(value_at<std::uint8_t>(bytes, 25), 4);
+  check_equal(value_at<std::uint16_t>(bytes, 6), 1);  // adjusted GPS time
+  check_equal(value_at<std::uint8_t>(bytes, 104), 1);
+  REQUIRE(value_at<std::uint16_t>(bytes, 105) == record);
+  check_equal(value_at<std::uint32_t>(bytes, 107), 3);
+  check_equal(value_at<std::uint32_t>(bytes, 111 + 4), 3);  // 'r': all are second returns
+  check_equal(value_at<std::uint64_t>(bytes, 247), 3);
+  REQUIRE(bytes.size() == points + 3 * record);
+  check_says(bytes.substr(0, points), depth ? "first_pose ... depth ... depth_source ... distance"
+                                            : "first_pose ... distance");
+  CHECK(bytes.substr(points, kOwn) == scans.first.build().substr(227 + kOwn, kOwn));
   const std::array<double, 3> distances{-1, 0.25, 0.0625};  // the first has no clearance
   for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t at = points + i * (kOwn + 12);
+    const std::size_t at = points + i * record, end = at + record;
     CHECK(bytes.substr(at + 12, kOwn - 12) == std::string(kOwn - 12, 'r'));
-    CHECK(record_value_at<std::uint32_t>(bytes, at + kOwn) == poses[i]);
-    CHECK(record_value_at<double>(bytes, at + kOwn + 4) == distances[i]);
+    CHECK(value_at<std::uint32_t>(bytes, at + kOwn) == scans.rows.first_pose[i]);
+    CHECK(value_at<double>(bytes, end - 8) == distances[i]);
+    if (!depth) continue;
+    const double found = value_at<double>(bytes, end - 24);
+    CHECK((i == 2 ? std::isnan(found) : found == scans.rows.depth[i]));
+    CHECK(value_at<std::uint64_t>(bytes, end - 16) == scans.rows.depth_source[i]);
   }
-  CHECK(record_value_at<std::int32_t>(bytes, points + 2 * (kOwn + 12)) ==
-        7003);  // in the result's scale
-}
-
-TEST_CASE("copied records have depths behind the first pose, and before the distance") {
-  Scans scans;
-  add_sample_depths(scans.header, scans.rows);
-  const std::string bytes = scans.exported();
-  const auto points = record_value_at<std::uint32_t>(bytes, 96);
-  constexpr unsigned kRecord = kOwn + 4 + 16 + 8;
-  REQUIRE(record_value_at<std::uint16_t>(bytes, 105) == kRecord);
-  const std::size_t pose_at = bytes.find("first_pose"), depth_at = bytes.find("depth");
-  CHECK(pose_at < depth_at);
-  CHECK(bytes.find("depth_source") < points);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::size_t at = points + i * kRecord + kOwn;
-    CHECK(record_value_at<std::uint32_t>(bytes, at) == scans.rows.first_pose[i]);
-    const double depth = record_value_at<double>(bytes, at + 4);
-    CHECK(std::isnan(depth) == (i == 2));
-    if (i < 2) CHECK(depth == scans.rows.depth[i]);
-    CHECK(record_value_at<std::uint64_t>(bytes, at + 12) == scans.rows.depth_source[i]);
-  }
-  check_equal(record_value_at<double>(bytes, points + kRecord + kOwn + 20), 0.25);
-}
-
-TEST_CASE("copied records are a LAS file that reads back as the result's points") {
-  const Scans scans;
-  scans.exported();
   const auto reader = open_point_file(scans.folder / "out.las");
   PointBatch batch;
   REQUIRE(reader->read(batch));
@@ -140,48 +109,39 @@ TEST_CASE("extra bytes of a scan keep their descriptions, and what has none is c
   if (with) scans.first.vlrs = scans.second.vlrs = {{"LASF_Spec", 4, described}};
   const std::string bytes = scans.exported();
   const std::size_t table = 375 + 54;
-  CHECK(record_value_at<std::uint16_t>(bytes, 375 + 20) == 192 * (with ? 4 : 3));
+  CHECK(value_at<std::uint16_t>(bytes, 375 + 20) == 192 * (with ? 4 : 3));
   std::size_t at = table;
   if (with) {
     CHECK(bytes.substr(at, 192) == described);
     at += 192;
   }
   check_equal(bytes.substr(at + 4, 12), "undocumented");
-  check_equal(record_value_at<std::uint8_t>(bytes, at + 2), 0);
-  CHECK(record_value_at<std::uint8_t>(bytes, at + 3) == (with ? 1 : 3));
+  check_equal(value_at<std::uint8_t>(bytes, at + 2), 0);
+  CHECK(value_at<std::uint8_t>(bytes, at + 3) == (with ? 1 : 3));
   check_equal(bytes.substr(at + 192 + 4, 10), "first_pose");
   check_equal(bytes.substr(at + 2 * 192 + 4, 8), "distance");
-  check_equal(record_value_at<std::uint8_t>(bytes, at + 2 * 192 + 3), 1);
-  check_equal(record_value_at<double>(bytes, at + 2 * 192 + 40), -1);
+  check_equal(value_at<std::uint8_t>(bytes, at + 2 * 192 + 3), 1);
+  check_equal(value_at<double>(bytes, at + 2 * 192 + 40), -1);
 }
 
-TEST_CASE("scans of another result are refused with the first difference") {
-  Scans scans;
-  SECTION("another place") {
-    scans.first.points[1][2] += 1;
-    check_refused([&] { return scans.exported(); },
-                  "a.las: point 1 (source index 1) ... these are not the scans of this result");
-  }
-  SECTION("another place after rounding") {
-    scans.second.points[1][0] += 1;
-    check_refused([&] { return scans.exported(); }, "b.las: point 1 (source index 4)");
-  }
-  SECTION("another number of points") {
-    scans.second.points.pop_back();
-    check_refused([&] { return scans.exported(); }, "have 5 points ... has 6 ... same order");
-  }
-  CHECK_FALSE(std::filesystem::exists(scans.folder / "out.las"));
-}
-
-TEST_CASE("what cannot be copied is refused by name") {
-  Scans scans;
-  std::string expected;
-  SECTION("another point format") { scans.second.format = 3, expected = "point format 3"; }
-  SECTION("other extra bytes") { scans.second.extra_bytes = 4, expected = "records of 32 bytes"; }
-  SECTION("another kind of time") { scans.second.global_encoding = 0, expected = "GPS week time"; }
-  SECTION("waveforms") { scans.first.format = 4, expected = "a.las: its records (point format 4)"; }
-  check_refused<InputError>([&] { return scans.exported(); }, expected);
-  CHECK_THROWS_AS(scans.exported("out.ply"), UsageError);
+TEST_CASE("scans of another result, and what cannot be copied, are refused with the difference") {
+  const auto check = [](const char* words, const std::function<void(Scans&)>& change) {
+    Scans scans;
+    change(scans);
+    check_refused<InputError>([&] { return scans.exported(); }, words);
+    CHECK_FALSE(std::filesystem::exists(scans.folder / "out.las"));
+  };
+  check("a.las: point 1 (source index 1) ... these are not the scans of this result",
+        [](Scans& scans) { scans.first.points[1][2] += 1; });
+  // In this file the point is found after rounding.
+  check("b.las: point 1 (source index 4)", [](Scans& scans) { scans.second.points[1][0] += 1; });
+  check("have 5 points ... has 6 ... same order",
+        [](Scans& scans) { scans.second.points.pop_back(); });
+  check("point format 3", [](Scans& scans) { scans.second.format = 3; });
+  check("records of 32 bytes", [](Scans& scans) { scans.second.extra_bytes = 4; });
+  check("GPS week time", [](Scans& scans) { scans.second.global_encoding = 0; });
+  check("a.las: its records (point format 4)", [](Scans& scans) { scans.first.format = 4; });
+  CHECK_THROWS_AS(Scans().exported("out.ply"), UsageError);
 }
 
 TEST_CASE("scans that are no LAS may be among them where no point of theirs is copied") {
@@ -205,5 +165,5 @@ TEST_CASE("scans that are no LAS may be among them where no point of theirs is c
 TEST_CASE("nothing to copy gives an empty LAS file") {
   Scans scans;
   scans.rows = {};
-  check_equal(record_value_at<std::uint64_t>(scans.exported(), 247), 0);
+  check_equal(value_at<std::uint64_t>(scans.exported(), 247), 0);
 }

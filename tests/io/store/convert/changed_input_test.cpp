@@ -16,39 +16,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls a function when a stage of the conversion begins.
-class At final : public Progress {
- public:
-  At(std::string stage, std::function<void()> act) : stage_(std::move(stage)), act_(act) {}
-
-  void begin(std::string_view stage, std::uint64_t, std::string_view) override {
-    if (stage == stage_) act_();
-  }
-  void advance(std::uint64_t) override {}
-  void end() override {}
-
- private:
-  std::string stage_;
-  std::function<void()> act_;
-};
-
 /// Two scans, and a file of the second one's size with other points in the same place.
-struct Scans {
+struct Scans : Conversion {
   Scans() {
-    write_las(first, points);
-    write_las(second, points);
+    add_las("a.las", points);
+    add_las("b.las", points);
     auto others = points;
     std::swap(others.front(), others.back());
     write_las(other, others);
     // The file's time is set back, so that a change is seen however coarse the file system's clock
     // is.
-    const auto past = fs::last_write_time(second) - std::chrono::hours(1);
-    fs::last_write_time(second, past);
-    options = conversion_of({first, second}, folder / "a.h5");
+    fs::last_write_time(second, fs::last_write_time(second) - std::chrono::hours(1));
   }
 
   std::string refusal_of_change(const std::string& stage, const std::function<void()>& change) {
-    At progress(stage, change);
+    WatchedStage progress(stage, change);
     try {
       convert_scans(options, progress);
     } catch (const InputError& error) {
@@ -57,10 +39,8 @@ struct Scans {
     return {};
   }
 
-  ScratchFolder folder;
-  fs::path first = folder / "a.las", second = folder / "b.las", other = folder / "other.las";
+  fs::path second = folder / "b.las", other = folder / "other.las";
   std::vector<Quantum> points = cube_cloud(1000, -50, 50, 1);
-  ConversionOptions options;
 };
 
 }  // namespace
@@ -95,7 +75,7 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
 TEST_CASE("points are distributed only where they are those that were counted") {
   Scans scans;
   NoProgress progress;
-  EnvironmentSource environment({scans.first, scans.second}, {}, progress);
+  EnvironmentSource environment(scans.options.inputs, {}, progress);
   const Lattice lattice;
   InputSurvey survey;
   PlaceCounter places({});

@@ -1,7 +1,10 @@
+// Stores that conversions make, and what is refused.
 #include "io/store/convert/convert.hpp"
 
-#include "io/files/hdf5.hpp"
+#include <functional>
+
 #include "io/store/convert/conversion_identity.hpp"
+#include "io/store/convert/distribute.hpp"
 #include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
@@ -14,59 +17,58 @@ using namespace clearway::test;
 
 namespace {
 
-/// One LAS file and the options of its conversion.
-struct Scan {
-  explicit Scan(std::vector<Quantum> cloud, std::uint32_t cell_points = 64)
-      : points(std::move(cloud)) {
-    write_las(folder / "a.las", points);
-    options = conversion_of({folder / "a.las"}, folder / "a.h5", cell_points);
+/// The conversion of one LAS file.
+struct OneScan : Conversion {
+  explicit OneScan(std::vector<Quantum> cloud, std::uint32_t cell_points = 64)
+      : Conversion(cell_points), points(std::move(cloud)) {
+    add_las("a.las", points);
   }
 
-  ConversionReport convert() const { return convert_quietly(options); }
-  std::string converted_bytes() const {
-    convert();
-    return bytes_of(options.output);
-  }
   std::vector<std::string> files() const {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "")) {
       names.push_back(entry.path().filename().string());
     }
-    std::sort(names.begin(), names.end());
+    std::ranges::sort(names);
     return names;
   }
 
-  ScratchFolder folder;
   std::vector<Quantum> points;
-  ConversionOptions options;
 };
 
-std::array<std::int64_t, 3> cube_of(const Quantum& q, std::int64_t quanta) {
-  std::array<std::int64_t, 3> cube{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    cube[k] = (std::int64_t{q[k]} + 1'000'000 * quanta) / quanta;  // rounded down
-  }
-  return cube;
-}
-
-/// Checks that a bucket's points, and so a cell's, lie in one cube.
-void check_cubes(const StoreReader& store, std::int64_t quanta) {
+/// Checks that a bucket's points, and so a cell's, lie in one cube. quanta: of the cube's sides.
+void check_cubes(const StoreReader& store, const std::array<std::int64_t, 3>& quanta) {
+  const auto cube_of = [&](const Quantum& q) {
+    std::array<std::int64_t, 3> cube{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      cube[k] = (std::int64_t{q[k]} + 1'000'000 * quanta[k]) / quanta[k];  // rounded down
+    }
+    return cube;
+  };
   for (const TopNode& node : store.top_tree()) {
     if (node.right != 0) continue;
     const auto points = points_of_cells(store, node.first_cell, node.cell_count);
-    for (const StoredPoint& p : points) {
-      REQUIRE(cube_of(p.q, quanta) == cube_of(points[0].q, quanta));
-    }
+    for (const StoredPoint& p : points) REQUIRE(cube_of(p.q) == cube_of(points[0].q));
   }
+}
+
+/// Checks a regular layout with cubes of this size.
+void check_regular(OneScan& scan, double size, const std::array<std::int64_t, 3>& quanta) {
+  CAPTURE(size);
+  scan.options.regular_size = size;
+  const StoreReader store = scan.store();
+  check_cubes(store, quanta);
+  CHECK(points_by_source(store) == scan.points);
+  CHECK(structure_faults(store).empty());
+  CHECK_THAT(store.metadata().layout, StartsWith("regular:"));
 }
 
 }  // namespace
 
 TEST_CASE("the store is the same whatever threads, memory and repetition") {
-  Scan scan(hard_clouds(70000, 5)[6].points, 1000);
+  OneScan scan(hard_clouds(70000, 5)[6].points, 1000);
   const std::string bytes = scan.converted_bytes();
-  CHECK(scan.converted_bytes() == bytes);
-  for (const auto& [threads, mebibytes] : {std::pair{1, 224}, {2, 512}, {4, 4096}, {3, 224}}) {
+  for (const auto& [threads, mebibytes] : {std::pair{2, 224}, {1, 224}, {2, 512}, {4, 4096}}) {
     scan.options.threads = threads;
     scan.options.memory_bytes = std::uint64_t(mebibytes) << 20;
     CHECK(scan.converted_bytes() == bytes);
@@ -75,7 +77,7 @@ TEST_CASE("the store is the same whatever threads, memory and repetition") {
 }
 
 TEST_CASE("a store says what it holds") {
-  const Scan scan(cube_cloud(777, -5000, 5000, 1), 100);
+  const OneScan scan(cube_cloud(777, -5000, 5000, 1), 100);
   const ConversionReport report = scan.convert();
   check_equal(report.cells, 8);
   check_equal(report.largest_change, 0);
@@ -97,185 +99,124 @@ TEST_CASE("a store says what it holds") {
 }
 
 TEST_CASE("no points make an empty store") {
-  const Scan scan({});
-  scan.convert();
-  const StoreReader store(scan.options.output);
+  const StoreReader store = OneScan({}).store();
   check_equal(store.point_count(), 0);
   CHECK(store.cells().empty());
   CHECK(store.tree().empty());
-  CHECK(faults_of(store).empty());
 }
 
 TEST_CASE("regular layouts keep to their cubes on both sides of the origin") {
-  Scan scan(cube_cloud(20000, -3000, 3000, 8));
-  const std::string adaptive_hash = [&] {
-    scan.convert();
-    return std::to_string(StoreReader(scan.options.output).metadata().points_hash);
-  }();
+  OneScan scan(cube_cloud(20000, -3000, 3000, 8));
+  const std::uint64_t adaptive_hash = scan.store().metadata().points_hash;
   for (const std::int64_t quanta : {16, 17, 1000, 1024, 3001, 10000}) {
-    CAPTURE(quanta);
-    scan.options.regular_size = static_cast<double>(quanta) * 0.001;
-    scan.convert();
-    const StoreReader store(scan.options.output);
-    check_cubes(store, quanta);
-    CHECK(points_by_source(store) == scan.points);
-    CHECK(structure_faults(store).empty());
-    CHECK(faults_of(store).empty());
-    CHECK(std::to_string(store.metadata().points_hash) == adaptive_hash);
-    CHECK_THAT(store.metadata().layout, StartsWith("regular:"));
+    check_regular(scan, static_cast<double>(quanta) * 0.001, {quanta, quanta, quanta});
+    CHECK(StoreReader(scan.options.output).metadata().points_hash == adaptive_hash);
   }
+  // Axes with very unlike scales.
+  scan.add_las("a.las", scan.points, {{0.001, 0.01, 0.1}, {0, 0, 0}});
+  check_regular(scan, 1.6, {1600, 160, 16});
 }
 
-TEST_CASE("cubes of axes with very unlike scales") {
-  Scan scan(cube_cloud(5000, -3000, 3000, 8));
-  write_las(scan.folder / "a.las", scan.points, {{0.001, 0.01, 0.1}, {0, 0, 0}});
-  scan.options.regular_size = 1.6;
-  scan.convert();
-  const StoreReader store(scan.options.output);
-  CHECK(points_by_source(store) == scan.points);
-  CHECK(structure_faults(store).empty());
-  for (const Cell& cell : store.cells()) {
-    const double quanta[] = {1600, 160, 16};
-    for (int k = 0; k < 3; ++k) {
-      CHECK(std::floor(cell.box.lo[k] / quanta[k]) == std::floor(cell.box.hi[k] / quanta[k]));
-    }
+TEST_CASE("a regular layout over the whole range of the integers") {
+  OneScan scan(cube_cloud(5000, -2147483648LL, 2147483647LL, 8));
+  scan.points.push_back({2147483647, 2147483647, 2147483647});
+  scan.points.push_back({-2147483647 - 1, -2147483647 - 1, -2147483647 - 1});
+  scan.add_las("a.las", scan.points);
+  for (const std::int64_t q : {200'000'000LL, 2'147'483'648LL, 2'147'483'649LL, 4'294'967'296LL}) {
+    check_regular(scan, static_cast<double>(q) * 0.001, {q, q, q});
   }
 }
 
 TEST_CASE("cubes too small for their cells are remarked on") {
-  Scan scan(cube_cloud(2000, -3000, 3000, 8), 1000);
+  OneScan scan(cube_cloud(2000, -3000, 3000, 8), 1000);
   scan.options.regular_size = 1.0;
   const ConversionReport report = scan.convert();
   REQUIRE(report.warnings.size() == 1);
   check_says(report.warnings[0].text, "fewer points a cell");
 }
 
-TEST_CASE("a regular layout over the whole range of the integers") {
-  Scan scan(cube_cloud(5000, -2147483648LL, 2147483647LL, 8));
-  scan.points.push_back({2147483647, 2147483647, 2147483647});
-  scan.points.push_back({-2147483647 - 1, -2147483647 - 1, -2147483647 - 1});
-  write_las(scan.folder / "a.las", scan.points);
-  for (const double size : {200000.0, 2147483.648, 2147483.649, 4294967.296}) {
-    CAPTURE(size);
-    scan.options.regular_size = size;
-    scan.convert();
-    const StoreReader store(scan.options.output);
-    check_cubes(store, static_cast<std::int64_t>(std::nearbyint(size * 1000)));
-    CHECK(points_by_source(store) == scan.points);
-  }
-}
-
-TEST_CASE("sizes of cubes that cannot be are refused") {
-  Scan scan(cube_cloud(200'000, -2147483648LL, 2147483647LL, 1));
+TEST_CASE("sizes of cubes and cells, memory and outputs that cannot be are refused") {
+  OneScan scan(cube_cloud(200'000, -2147483648LL, 2147483647LL, 1));
+  const std::string las = bytes_of(scan.folder / "a.las");
+  const ConversionOptions sound = scan.options;
+  const auto check = [&](const char* words, const std::function<void(ConversionOptions&)>& change) {
+    scan.options = sound;
+    change(scan.options);
+    check_says(scan.refusal<UsageError>(), words);
+    CHECK(bytes_of(scan.folder / "a.las") == las);
+    CHECK(scan.files().front() == "a.las");
+  };
   for (const double size : {0.0, -1.0, 0.015, 1e300, std::nan("")}) {
-    scan.options.regular_size = size;
-    CAPTURE(size);
-    check_says(conversion_refusal<UsageError>(scan.options), "a regular layout: expected cubes");
+    check("a regular layout: expected cubes", [&](auto& options) { options.regular_size = size; });
   }
-  scan.options.regular_size = 1.0;
-  check_says(conversion_refusal<UsageError>(scan.options), "expected larger cubes");
-  check_equal(scan.files(), {"a.las"});
-}
-
-TEST_CASE("sizes of cells out of range are refused") {
-  Scan scan(cube_cloud(100, -50, 50, 1));
+  check("expected larger cubes", [](auto& options) { options.regular_size = 1; });
   for (const std::uint32_t cell_points : {0u, 63u, (1u << 20) + 1}) {
-    scan.options.cell_points = cell_points;
-    check_says(conversion_refusal<UsageError>(scan.options), "64 to 1048576");
+    check("64 to 1048576", [&](auto& options) { options.cell_points = cell_points; });
+  }
+  for (const auto& input : {scan.folder / "a.las", scan.folder / ""}) {
+    check("is an input too", [&](auto& options) {
+      options.inputs = {input};
+      options.output = scan.folder / "a.las";
+    });
   }
 }
 
 TEST_CASE("too little memory is refused with the least that will do") {
-  Scan scan(cube_cloud(100, -50, 50, 1));
-  scan.options.memory_bytes = kLeastConversionMemory - 1;
-  check_says(conversion_refusal<ResourceError>(scan.options), "at least 224.0 MiB");
-  scan.options.memory_bytes = kLeastConversionMemory;
-  CHECK(conversion_refusal(scan.options).empty());
-}
-
-TEST_CASE("too little memory for the index of many cells is refused before they are made") {
   std::vector<Quantum> points;  // each in a cube, and so a cell, of its own
   for (int i = 0; i < 120'000; ++i) points.push_back({i % 400 * 2000, i / 400 * 2000, 0});
-  Scan scan(points);
-  scan.options.regular_size = 1;
-  scan.options.cell_points = 64;
+  OneScan scan(points);
+  scan.options.memory_bytes = kLeastConversionMemory - 1;
+  check_says(scan.refusal<ResourceError>(), "at least 224.0 MiB");
   scan.options.memory_bytes = kLeastConversionMemory;
-  check_says(conversion_refusal<ResourceError>(scan.options), "120000 cells need at least 227 MiB");
+  scan.options.regular_size = 1;
+  check_says(scan.refusal<ResourceError>(), "120000 cells need at least 227 MiB");
   check_equal(scan.files(), {"a.las"});
+  scan.options.regular_size.reset();
+  check_equal(scan.refusal<Error>(), "");
 }
 
-TEST_CASE("an existing output stays as it is unless it may be overwritten") {
-  Scan scan(cube_cloud(100, -50, 50, 1));
+TEST_CASE("an existing output stays as it is unless it may be overwritten, by a whole store") {
+  OneScan scan(cube_cloud(1000, -50, 50, 1));
   put_bytes(scan.options.output, "mine");
   scan.options.overwrite = false;
-  check_says(conversion_refusal<UsageError>(scan.options), "exists already");
-  check_equal(bytes_of(scan.options.output), "mine");
+  check_says(scan.refusal<UsageError>(), "exists already");
   scan.options.overwrite = true;
-  scan.convert();
-  CHECK(points_by_source(StoreReader(scan.options.output)) == scan.points);
-}
-
-TEST_CASE("an input is never overwritten by the output") {
-  Scan scan(cube_cloud(100, -50, 50, 1));
-  const std::string before = bytes_of(scan.folder / "a.las");
-  for (const auto& input : {scan.folder / "a.las", scan.folder / ""}) {
-    scan.options.inputs = {input};
-    scan.options.output = scan.folder / "a.las";
-    check_says(conversion_refusal<UsageError>(scan.options), "is an input too");
-    CHECK(bytes_of(scan.folder / "a.las") == before);
-  }
-}
-
-TEST_CASE("a failing conversion leaves nothing behind") {
-  Scan scan(cube_cloud(1000, -50, 50, 1));
   const std::string las = bytes_of(scan.folder / "a.las");
-  put_bytes(scan.folder / "a.las", las.substr(0, las.size() - 10));
-  check_says(conversion_refusal<InputError>(scan.options), "a.las");
-  check_equal(scan.files(), {"a.las"});
-  put_bytes(scan.options.output, "mine");
-  CHECK_FALSE(conversion_refusal<InputError>(scan.options).empty());
+  scan.add("a.las", las.substr(0, las.size() - 10));
+  check_says(scan.refusal(), "a.las");
   check_equal(bytes_of(scan.options.output), "mine");
+  check_equal(scan.files(), {"a.h5", "a.las"});
+  scan.add("a.las", las);
+  CHECK(points_by_source(scan.store()) == scan.points);
 }
 
-TEST_CASE("a store with points left out is converted until its inputs change, and warns of them") {
-  const ScratchFolder folder;
-  NoProgress progress;
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  write_ply(folder / "a.ply", std::vector<Vec3>{{1, 2, 3}, {nan, 0, 0}});
-  ConversionOptions options = conversion_of({folder / "a.ply"}, folder / "a.h5");
-  convert_quietly(options);
-  CHECK(is_converted(options, progress));
+TEST_CASE("a store is that of its inputs and options until these change") {
+  Conversion conversion;
+  ConversionOptions& options = conversion.options;
+  conversion.add_ply("a.ply", std::vector<Vec3>{{1, 2, 3}, {std::nan(""), 0, 0}});
+  CHECK_FALSE(is_converted_by(options));
+  check_equal(codes_of(conversion.store().metadata().warnings), "non-finite-points");
+  CHECK(is_converted_by(options));
   // A strict call also takes the conversion for done, and then refuses what the store warns of.
   options.strict = true;
-  CHECK(is_converted(options, progress));
-  {
-    const StoreReader store(options.output);
-    REQUIRE(store.metadata().warnings.size() == 1);
-    check_equal(store.metadata().warnings[0].code, "non-finite-points");
-  }
-  write_ply(folder / "a.ply", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
-  CHECK_FALSE(is_converted(options, progress));
-  convert_quietly(options);
-  CHECK(is_converted(options, progress));
-}
-
-TEST_CASE("a store in degrees is what a conversion makes that ignores the reference system") {
-  const ScratchFolder folder;
-  NoProgress progress;
-  LasBytes las;
-  las.minor = 4;
-  las.format = 6;
-  las.global_encoding = 16;
-  las.vlrs = {{"LASF_Projection", 2112,
-               R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
-               R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]])"}};
-  put_bytes(folder / "a.las", las.build());
-  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
-  options.ignore_crs = true;
-  convert_quietly(options);
-  CHECK(is_converted(options, progress));
-  options.ignore_crs = false;
-  CHECK_FALSE(is_converted(options, progress));
+  CHECK(is_converted_by(options));
+  options.strict = false;
+  options.keep_withheld = true;
+  CHECK_FALSE(is_converted_by(options));
+  options.keep_withheld = false;
+  conversion.add_ply("a.ply", std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}});
+  CHECK_FALSE(is_converted_by(options));
+  conversion.convert();
+  CHECK(is_converted_by(options));
+  // The poses beside scans of 3DTK are inputs too, and files that cannot be read are none.
+  conversion.add("scan000.3d", "0 0 100\n");
+  put_bytes(conversion.folder / "scan000.pose", "0 0 0\n0 0 0\n");
+  conversion.add("b.xyz", "no point\n");
+  options.skip_unreadable = true;
+  conversion.convert();
+  CHECK(is_converted_by(options));
+  put_bytes(conversion.folder / "scan000.pose", "0 0 1\n0 0 0\n");
+  CHECK_FALSE(is_converted_by(options));
 }
 
 namespace {

@@ -1,10 +1,6 @@
 #pragma once
 
-#include <cstdint>
-#include <filesystem>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "clearway/error.hpp"
 #include "io/store/convert/environment_source.hpp"
@@ -20,42 +16,45 @@ struct Environment {
   double largest_change;
   std::vector<Message> warnings;
   LengthUnit unit;
+
+  std::vector<Quantum> quanta() const {
+    std::vector<Quantum> all;
+    for (const StoredPoint& point : points) all.push_back(point.q);
+    return all;
+  }
 };
 
-inline Environment read_environment(const std::vector<std::filesystem::path>& inputs,
-                                    const EnvironmentOptions& options = {}) {
-  NoProgress progress;
-  EnvironmentSource source(inputs, options, progress);
-  Environment out{};
-  QuantaBatch batch;
-  while (source.read(batch)) {
-    for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
-      out.points.push_back({batch.source(i), batch.quanta[i]});
+/// Files in a folder of their own that are read as an environment.
+struct Inputs : Conversion {
+  Environment read(const EnvironmentOptions& how = {}) const {
+    NoProgress progress;
+    EnvironmentSource source(options.inputs, how, progress);
+    Environment out{};
+    QuantaBatch batch;
+    while (source.read(batch)) {
+      for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
+        out.points.push_back({batch.source(i), batch.quanta[i]});
+      }
     }
+    out.quantisation = source.quantisation();
+    out.input_points = source.input_points();
+    out.non_finite_points = source.non_finite_points();
+    out.largest_change = source.largest_change();
+    out.warnings = source.remarks();
+    out.unit = source.unit();
+    return out;
   }
-  out.quantisation = source.quantisation();
-  out.input_points = source.input_points();
-  out.non_finite_points = source.non_finite_points();
-  out.largest_change = source.largest_change();
-  out.warnings = source.remarks();
-  out.unit = source.unit();
-  return out;
-}
 
-inline std::optional<InputError> refused(const std::vector<std::filesystem::path>& inputs,
-                                         const EnvironmentOptions& options = {}) {
-  try {
-    read_environment(inputs, options);
-  } catch (const InputError& error) {
-    return error;
+  /// The error with which reading them is refused; "none" where it is not.
+  InputError refused(const EnvironmentOptions& how = {}) const {
+    try {
+      read(how);
+    } catch (const InputError& error) {
+      return error;
+    }
+    return InputError("none");
   }
-  return std::nullopt;
-}
-
-inline std::string refusal(const std::vector<std::filesystem::path>& inputs,
-                           const EnvironmentOptions& options = {}) {
-  const auto error = refused(inputs, options);
-  return error ? error->what() : "";
-}
+  std::string refusal(const EnvironmentOptions& how = {}) const { return refused(how).what(); }
+};
 
 }  // namespace clearway::test

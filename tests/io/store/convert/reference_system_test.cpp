@@ -1,14 +1,7 @@
 // What a conversion makes of the coordinate reference systems and units that scans name.
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 #include <tuple>
-#include <vector>
 
-#include "clearway/error.hpp"
-#include "io/store/convert/convert.hpp"
-#include "io/store/store_reader.hpp"
 #include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -54,55 +47,41 @@ struct MapScan {
 
 struct Outcome {
   std::string refusal = {};
-  std::string messages = " ";  ///< the codes of notes and warnings, with spaces around
+  std::string codes = {};  ///< of notes and warnings: "note a, b"
   Remedy remedy = Remedy::kNone;
   double amount = 0;
   ConversionReport report = {};
 
-  bool has(const std::string& code) const {
-    return messages.find(" " + code + " ") != messages.npos;
+  /// The only message, a warning of this code; fails where there is another or none.
+  const Message& only(const std::string& code) const {
+    INFO(refusal);
+    REQUIRE(codes == code);
+    return report.warnings.at(0);
   }
 };
 
 using NamedFiles = std::vector<std::pair<std::string, std::string>>;
 
 Outcome outcome_of_files(const NamedFiles& files, const ConvertOptions& how = {}) {
-  const ScratchFolder folder;
-  ConversionOptions options{how, {}, folder / "a.h5"};
-  for (const auto& [name, bytes] : files) {
-    put_bytes(folder / name, bytes);
-    options.inputs.push_back(folder / name);
-  }
+  Conversion conversion;
+  conversion.options = {how, {}, conversion.folder / "a.h5"};
+  for (const auto& [name, bytes] : files) conversion.add(name, bytes);
   Outcome out;
-  options.message = [&](const Message& message) { out.messages += message.code + " "; };
+  std::vector<Message> messages;
+  conversion.options.message = [&](const Message& message) { messages.push_back(message); };
   try {
-    out.report = convert_quietly(options);
+    out.report = conversion.convert();
   } catch (const InputError& error) {
     out.refusal = error.what();
     out.remedy = error.remedy();
     out.amount = error.amount();
   }
+  out.codes = codes_of(messages);
   return out;
 }
 
 Outcome outcome_of(const MapScan& scan, const ConvertOptions& how = {}) {
   return outcome_of_files({{"a.las", scan.bytes()}}, how);
-}
-
-/// A warning of this code; fails where there is none.
-const Message& warning(const Outcome& outcome, const std::string& code) {
-  const auto& all = outcome.report.warnings;
-  const auto found = std::ranges::find(all, code, &Message::code);
-  INFO(outcome.messages << outcome.refusal);
-  REQUIRE(found != all.end());
-  return *found;
-}
-
-double number_of(const Message& message, const std::string& name) {
-  for (const auto& [key, value] : message.numbers) {
-    if (key == name) return value;
-  }
-  return 0;
 }
 
 }  // namespace
@@ -113,15 +92,15 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
       R"(ENGCRS["a",EDATUM["x"],CS[Cartesian,3],AXIS["x",east,LENGTHUNIT["metre",1]],)"
       R"(AXIS["y",north,LENGTHUNIT["metre",1]],)"
       R"(AXIS["z",up,LENGTHUNIT["US survey foot",0.3048006096012192]]])";
-  const std::vector<MapScan> scans{{kUtm32 + "," + kFeetHeights},
-                                   {kUtm32 + "]," + kFeetHeights},
-                                   {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
-                                   {"COMPD_CS[\"c\", " + kUtm32 + "], " + kFeetHeights + "]"},
-                                   {third},
-                                   {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
-                                   {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
-                                   {kUtm32, {{4099, 9003}}}};
-  for (const MapScan& scan : scans) {
+  for (const MapScan& scan :
+       std::vector<MapScan>{{kUtm32 + "," + kFeetHeights},
+                            {kUtm32 + "]," + kFeetHeights},
+                            {"COMPD_CS[\"c\"," + kUtm32 + "," + kFeetHeights + "]"},
+                            {"COMPD_CS[\"c\", " + kUtm32 + "], " + kFeetHeights + "]"},
+                            {third},
+                            {"", {{1024, 1}, {3072, 32632}, {4096, 6360}}},
+                            {"", {{1024, 1}, {3072, 32632}, {4099, 9003}}},
+                            {kUtm32, {{4099, 9003}}}}) {
     INFO(scan.text << " and " << scan.keys.size() << " keys");
     const Outcome refused = outcome_of(scan);
     check_says(refused.refusal,
@@ -131,64 +110,36 @@ TEST_CASE("heights in another unit are refused, named, converted, or ignored wit
     check_says(outcome_of(scan, {.unit_z = FileUnit::named("m")}).refusal,
                "its heights are in us-survey-foot, but metre was given");
     const Outcome converted = outcome_of(scan, {.unit_z = FileUnit::named("us-ft")});
-    REQUIRE(converted.refusal.empty());
-    CHECK(converted.report.warnings.empty());
-    check_near(converted.report.box->hi.z, 20 * foot, 1e-12);
-    CHECK(converted.report.metadata.quantisation.scale[2] == 0.001 * foot);
+    check_equal(converted.refusal + converted.codes, "");
+    check_near(converted.report.box.value().hi.z, 20 * foot, 1e-12);
+    check_near(converted.report.box->hi.x, 500'005, 1e-9);
+    check_equal(converted.report.metadata.quantisation.scale[2], 0.001 * foot);
     check_equal(converted.report.largest_change, 0);
     const Outcome ignored = outcome_of(scan, {.ignore_crs = true});
+    check_says(ignored.only("crs-ignored").text, "its heights are in");
     check_equal(ignored.report.box->hi.z, 20);
-    check_equal(ignored.report.warnings.size(), 1);
-    check_says(warning(ignored, "crs-ignored").text, "its heights are in");
   }
-}
-
-TEST_CASE("heights in the other of the two feet, or without a unit, go with the plane") {
-  for (const MapScan& scan : std::vector<MapScan>{{"", {{1024, 1}, {3076, 9002}, {4099, 9003}}},
-                                                  {"", {{1024, 1}, {3076, 9003}, {4099, 9002}}},
-                                                  {"", {{1024, 1}, {3076, 9003}}}}) {
-    const Outcome outcome = outcome_of(scan);
-    CHECK(outcome.refusal.empty());
-    check_equal(outcome.messages, " feet ");
-  }
-  check_equal(outcome_of(MapScan{kUtm32}).messages, " ");
 }
 
 TEST_CASE("heights of floating-point numbers, several files and tables are converted") {
-  const ConvertOptions feet{.unit_z = FileUnit::named("ft")};
-  const Outcome table = outcome_of_files({{"a.xyz", "X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n"}});
-  check_says(table.refusal, "its heights are in foot, its other coordinates in metre");
-  const Outcome named = outcome_of_files({{"a.xyz", "X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n"}}, feet);
-  REQUIRE(named.refusal.empty());
-  CHECK(named.report.box->hi.z == Approx(3.048).margin(1e-6));
-  check_equal(named.report.box->hi.x, 3);
-  const Outcome unnamed = outcome_of_files({{"a.xyz", "1 2 0\n3 4 10\n"}}, feet);
-  CHECK(unnamed.report.box->hi.z == Approx(3.048).margin(1e-6));
-  const Outcome both =
-      outcome_of_files({{"a.las", MapScan{}.bytes()}, {"b.las", MapScan{}.bytes()}},
-                       {.unit_z = FileUnit::named("mm")});
-  CHECK(both.report.box->hi.z == Approx(0.02));
-  check_equal(both.report.points, 6);
+  const std::string table = "X [m],Y [m],Z [ft]\n1,2,0\n3,4,10\n", metres = MapScan{}.bytes();
+  const std::string survey = MapScan{"", {{1024, 1}, {3076, 9003}}}.bytes();
+  check_says(outcome_of_files({{"a.xyz", table}}).refusal,
+             "its heights are in foot, its other coordinates in metre");
+  const auto check = [](const NamedFiles& files, const char* unit, double height,
+                        double metres_of_unit, double tolerance = 1e-6) {
+    CAPTURE(files[0].first, unit);
+    const Outcome outcome = outcome_of_files(files, {.unit_z = FileUnit::named(unit)});
+    check_equal(outcome.refusal, "");
+    check_near(outcome.report.box.value().hi.z, height, tolerance);
+    check_equal(outcome.report.metadata.height_unit, metres_of_unit);
+  };
+  check({{"a.xyz", table}}, "ft", 3.048, kMetresPerFoot);
+  check({{"a.xyz", "1 2 0\n3 4 10\n"}}, "ft", 3.048, kMetresPerFoot);
+  check({{"a.las", metres}, {"b.las", metres}}, "mm", 0.02, 0.001);
   // In a plane of US survey feet, "ft" is this foot.
-  const MapScan survey{"", {{1024, 1}, {3076, 9003}}};
-  check_equal(outcome_of(survey, feet).report.box->hi.z, 20);
-  CHECK(outcome_of(survey, {.unit_z = FileUnit::named("m")}).report.box->hi.z ==
-        Approx(20 / kMetresPerUsSurveyFoot));
-}
-
-TEST_CASE("a store of converted heights is not that of other options") {
-  const ScratchFolder folder;
-  NoProgress progress;
-  put_bytes(folder / "a.las", MapScan{}.bytes());
-  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
-  options.unit_z = FileUnit::named("ft");
-  convert_quietly(options);
-  CHECK(StoreReader(options.output).metadata().height_unit == kMetresPerFoot);
-  CHECK(is_converted(options, progress));
-  options.unit_z = FileUnit::named("in");
-  CHECK_FALSE(is_converted(options, progress));
-  options.unit_z = {};
-  CHECK_FALSE(is_converted(options, progress));
+  check({{"a.las", survey}}, "ft", 20, kMetresPerUsSurveyFoot, 0);
+  check({{"a.las", survey}}, "m", 20 / kMetresPerUsSurveyFoot, 1, 1e-4);
 }
 
 TEST_CASE("a system that is not read is refused, and never counts as none") {
@@ -196,19 +147,29 @@ TEST_CASE("a system that is not read is refused, and never counts as none") {
        std::vector<std::string>{"PROJCS[\"a\"]", "Local grid", kUtm32 + ",VERT_CS[\"v\"]",
                                 "LOCAL_CS[\"a\",UNIT[\"metre\",1],AXIS[\"X\",EAST]"}) {
     INFO(text);
-    check_says(outcome_of(MapScan{text}).refusal, "is not read");
-    const Outcome ignored = outcome_of(MapScan{text}, {.ignore_crs = true});
-    check_says(warning(ignored, "crs-ignored").text, "is not read");
+    check_says(outcome_of({text}).refusal, "is not read");
+    check_says(outcome_of({text}, {.ignore_crs = true}).only("crs-ignored").text, "is not read");
   }
   const MapScan no_unit{"", {{1024, 1}, {3076, 32632}}};
-  check_says(outcome_of(no_unit).refusal, "key 3076 is 32632 ... --unit names it");
-  check_equal(outcome_of(no_unit, {.unit = FileUnit::named("m")}).messages, " crs-not-read ");
-  check_equal(outcome_of(no_unit, {.ignore_crs = true}).messages, " crs-ignored ");
-  const MapScan by_text{"LOCAL_CS[\"a\"]", {{1024, 1}, {3076, 32632}}};
-  check_says(outcome_of(by_text).refusal, "key 3076 is 32632 ... --unit names it");
-  check_equal(outcome_of(MapScan{"", {{1024, 1}, {4096, 5030}}}).messages, " crs-not-read ");
-  const Outcome known = outcome_of(MapScan{"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}});
-  check_equal(known.messages, " crs-not-read ");
+  for (const MapScan& scan : {no_unit, MapScan{"LOCAL_CS[\"a\"]", no_unit.keys}}) {
+    check_says(outcome_of(scan).refusal, "key 3076 is 32632 ... --unit names it");
+  }
+  const auto check = [](const MapScan& scan, const std::string& codes,
+                        const ConvertOptions& how = {}) {
+    INFO(scan.text << " and " << scan.keys.size() << " keys");
+    const Outcome outcome = outcome_of(scan, how);
+    check_equal(outcome.codes, codes);
+    check_equal(outcome.refusal, "");
+  };
+  check(no_unit, "crs-not-read", {.unit = FileUnit::named("m")});
+  check(no_unit, "crs-ignored", {.ignore_crs = true});
+  check({"", {{1024, 1}, {4096, 5030}}}, "crs-not-read");
+  check({"PROJCS[\"a\"]", {{1024, 1}, {3072, 32632}}}, "crs-not-read");
+  // Heights in the other of the two feet, or without a unit, go with the plane.
+  check({"", {{1024, 1}, {3076, 9002}, {4099, 9003}}}, "feet");
+  check({"", {{1024, 1}, {3076, 9003}, {4099, 9002}}}, "feet");
+  check({"", {{1024, 1}, {3076, 9003}}}, "feet");
+  check({kUtm32}, "");
 }
 
 TEST_CASE("a record that places the points is refused unless it leaves them where they are") {
@@ -217,14 +178,8 @@ TEST_CASE("a record that places the points is refused unless it leaves them wher
                            bool ignore = false) {
     LasBytes las;
     if (behind) las.minor = 4;
-    auto& records = behind ? las.evlrs : las.vlrs;
-    auto& record = records.emplace_back();
-    record.user = user;
-    record.id = id;
-    record.payload = payload;
-    ConvertOptions how;
-    how.ignore_crs = ignore;
-    return outcome_of_files({{"a.las", las.build()}}, how);
+    (behind ? las.evlrs : las.vlrs).push_back({user, id, payload});
+    return outcome_of_files({{"a.las", las.build()}}, {.ignore_crs = ignore});
   };
   const auto ptx = [](double turn, double shift) {
     std::array<double, 34> numbers{};  // the matrix is the last 16 of them
@@ -236,7 +191,7 @@ TEST_CASE("a record that places the points is refused unless it leaves them wher
   for (const std::string& moves : {ptx(0.5, 0), ptx(0, 10), ptx(std::nan(""), 0)}) {
     check_says(outcome("LAStools", 2001, moves).refusal,
                "LAStools 2001 holds the matrix of a scanner ... such as PTX");
-    CHECK(outcome("LAStools", 2001, moves, true).has("crs-ignored"));
+    check_says(outcome("LAStools", 2001, moves, true).codes, "crs-ignored");
   }
   check_says(outcome("LASF_Projection", 2111, "PARAM_MT[\"Affine\"]").refusal, "2111");
   for (const auto& [user, id, payload] :
@@ -246,48 +201,41 @@ TEST_CASE("a record that places the points is refused unless it leaves them wher
            {"LAStools", 2000, ptx(0, 10)},
            {"LASF_Spec", 7, ptx(0, 10)},
            {"LASF_Projection", 2111, ""}}) {
-    CHECK(outcome(user, id, payload).refusal.empty());
+    check_equal(outcome(user, id, payload).refusal, "");
   }
 }
 
 TEST_CASE("a map that does not keep lengths is warned of, and refused above 5 %") {
-  struct Case {
-    std::string text;
-    double easting, northing, scale;
-  };
-  const std::string compound = "EPSG:3857+5773";
-  for (const Case& one : std::vector<Case>{{"EPSG:3857", 1224514.4, 6106854.8, 1.4962},
-                                           {compound, 1224514.4, 6106854.8, 1.4962},
-                                           {"EPSG:3395", 1113194.9, 8362698.5, 1.9950},
-                                           {kUtm32, 3'000'000, 5'300'000, 1.0774}}) {
-    INFO(one.text);
-    const MapScan scan{one.text, {}, one.easting, one.northing};
-    const Outcome refused = outcome_of(scan);
-    check_says(refused.refusal, std::string(std::to_string(one.scale).substr(0, 4)) +
-                                    " ... times those on the ground");
-    CHECK(refused.remedy == Remedy::kIgnoreCrs);
-    const Outcome ignored = outcome_of(scan, {.ignore_crs = true});
-    CHECK(number_of(warning(ignored, "map-scale"), "scale") == Approx(one.scale).margin(1e-3));
-    check_equal(ignored.report.metadata.warnings.size(), 1);
-  }
-  const Outcome polar = outcome_of(MapScan{"EPSG:3031", {}, 1419227.9, 819391.6});
-  CHECK(number_of(warning(polar, "map-scale"), "scale") == Approx(0.98963).margin(1e-4));
-  for (const MapScan& scan :
-       std::vector<MapScan>{{kUtm32},
-                            {kUtm32, {}, 166'000, 10'000},
-                            {kUtm32, {}, 834'000, 10'000},
-                            {"EPSG:2193", {}, 1'750'000, 5'426'000},
-                            {"EPSG:4978", {}, 4'000'000, 600'000},
-                            {"LOCAL_CS[\"a\",UNIT[\"metre\",1]]", {}, 0, 0}}) {
-    INFO(scan.text);
-    check_equal(outcome_of(scan).messages, " ");
-  }
-  check_equal(outcome_of(MapScan{"EPSG:5514", {}, 1e9, 1e9}).messages, " map-scale-unknown ");
-  // Named in feet, coordinates on a map in metres lie where they do in metres.
   const double foot = kMetresPerUsSurveyFoot;
-  const MapScan contradicting{
-      "", {{1024, 1}, {3072, 32632}, {3076, 9003}}, 500'000 / foot, 5'300'000 / foot};
-  check_equal(outcome_of(contradicting).messages, " units-contradict feet ");
+  // scale: of the map; 0: nothing is said of it.
+  const auto check = [](const MapScan& scan, double scale, const std::string& codes) {
+    INFO(scan.text);
+    Outcome outcome = outcome_of(scan);
+    if (scale > 1.05) {
+      check_says(outcome.refusal,
+                 std::to_string(scale).substr(0, 4) + " ... times those on the ground");
+      CHECK(outcome.remedy == Remedy::kIgnoreCrs);
+      outcome = outcome_of(scan, {.ignore_crs = true});
+      check_equal(outcome.report.metadata.warnings.size(), 1);
+    }
+    check_equal(outcome.codes, codes);
+    if (scale > 0) check_near(number_of(outcome.only(codes), "scale"), scale, 1e-4);
+  };
+  check({"EPSG:3857", {}, 1224514.4, 6106854.8}, 1.4962, "map-scale");
+  check({"EPSG:3857+5773", {}, 1224514.4, 6106854.8}, 1.4962, "map-scale");
+  check({"EPSG:3395", {}, 1113194.9, 8362698.5}, 1.9950, "map-scale");
+  check({kUtm32, {}, 3'000'000, 5'300'000}, 1.0774, "map-scale");
+  check({"EPSG:3031", {}, 1419227.9, 819391.6}, 0.98963, "map-scale");
+  check({kUtm32}, 0, "");
+  check({kUtm32, {}, 166'000, 10'000}, 0, "");
+  check({kUtm32, {}, 834'000, 10'000}, 0, "");
+  check({"EPSG:2193", {}, 1'750'000, 5'426'000}, 0, "");
+  check({"EPSG:4978", {}, 4'000'000, 600'000}, 0, "");
+  check({"LOCAL_CS[\"a\",UNIT[\"metre\",1]]", {}, 0, 0}, 0, "");
+  check({"EPSG:5514", {}, 1e9, 1e9}, 0, "map-scale-unknown");
+  // Named in feet, coordinates on a map in metres lie where they do in metres.
+  check({"", {{1024, 1}, {3072, 32632}, {3076, 9003}}, 500'000 / foot, 5'300'000 / foot}, 0,
+        "units-contradict, feet");
 }
 
 TEST_CASE("the map of every input is judged, at the middle of its own files") {
@@ -295,47 +243,41 @@ TEST_CASE("the map of every input is judged, at the middle of its own files") {
   const std::string web = MapScan{"EPSG:3857", {}, 1'224'514, 6'106'854}.bytes();
   for (const NamedFiles& files : std::vector<NamedFiles>{
            {{"a.las", utm}, {"b.las", web}}, {{"a.las", utm}, {"b.las", web}, {"c.las", utm}}}) {
-    const Outcome refused = outcome_of_files(files);
-    check_says(refused.refusal, "b.las: lengths on the map of WGS 84 / Pseudo-Mercator");
-    const Outcome ignored = outcome_of_files(files, {.ignore_crs = true});
-    CHECK(ignored.messages.find("map-scale") == ignored.messages.rfind("map-scale"));
-    CHECK(number_of(warning(ignored, "map-scale"), "scale") == Approx(1.4962).margin(1e-3));
-    check_says(warning(ignored, "map-scale").text, "b.las: lengths on the map");
+    check_says(outcome_of_files(files).refusal,
+               "b.las: lengths on the map of WGS 84 / Pseudo-Mercator");
+    std::vector<Message> scales = outcome_of_files(files, {.ignore_crs = true}).report.warnings;
+    std::erase_if(scales, [](const Message& message) { return message.code != "map-scale"; });
+    REQUIRE(scales.size() == 1);
+    check_says(scales[0].text, "b.las: lengths on the map");
+    check_near(number_of(scales[0], "scale"), 1.4962, 1e-3);
   }
   const std::string unnamed = MapScan{}.bytes();
-  check_equal(outcome_of_files({{"a.las", utm}, {"b.las", unnamed}}).messages, " no-crs ");
-}
-
-TEST_CASE("a store of an ignored system is not that of options which do not ignore it") {
-  const ScratchFolder folder;
-  NoProgress progress;
-  put_bytes(folder / "a.las", MapScan{"EPSG:3857", {}, 1224514.4, 6106854.8}.bytes());
-  ConversionOptions options = conversion_of({folder / "a.las"}, folder / "a.h5");
-  options.ignore_crs = true;
-  convert_quietly(options);
-  CHECK(is_converted(options, progress));
-  options.ignore_crs = false;
-  CHECK_FALSE(is_converted(options, progress));
+  check_equal(outcome_of_files({{"a.las", utm}, {"b.las", unnamed}}).codes, "note no-crs");
 }
 
 TEST_CASE("numbers that look like degrees are warned of where nothing names a unit") {
-  const auto scan = [](double x, double y, double length, double height) {
+  struct Row {
+    double x, y, length, height;
+    bool is_warned = false;
+    FileUnit unit = {};
+  };
+  for (const Row& row : std::vector<Row>{{11.5, 48.1, 0.02, 35, true},
+                                         {-94.66, 31.03, 0.0229, 39, true},
+                                         {48.1, 11.5, 0.5, 300, true},
+                                         {11.5, 48.1, 0.02, 35, false, FileUnit::named("m")},
+                                         {0, 0, 20, 35},
+                                         {11.5, 48.1, 1, 20},
+                                         {500'000, 5'300'000, 0.5, 60},
+                                         {0, 0, 0, 10}}) {
+    CAPTURE(row.x, row.y, row.length, row.height);
     std::string text;
     for (int i = 0; i <= 10; ++i) {
       const double share = i / 10.0;
-      text += std::to_string(x + length * share) + " " +
-              std::to_string(y + length * share * share) + " " + std::to_string(height * share) +
-              "\n";
+      text += std::to_string(row.x + row.length * share) + " " +
+              std::to_string(row.y + row.length * share * share) + " " +
+              std::to_string(row.height * share) + "\n";
     }
-    return NamedFiles{{"a.xyz", text}};
-  };
-  CHECK(outcome_of_files(scan(11.5, 48.1, 0.02, 35)).has("like-degrees"));
-  CHECK(outcome_of_files(scan(-94.66, 31.03, 0.0229, 39)).has("like-degrees"));
-  CHECK(outcome_of_files(scan(48.1, 11.5, 0.5, 300)).has("like-degrees"));
-  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 0.02, 35), {.unit = FileUnit::named("m")})
-                  .has("like-degrees"));
-  CHECK_FALSE(outcome_of_files(scan(0, 0, 20, 35)).has("like-degrees"));
-  CHECK_FALSE(outcome_of_files(scan(11.5, 48.1, 1, 20)).has("like-degrees"));
-  CHECK_FALSE(outcome_of_files(scan(500'000, 5'300'000, 0.5, 60)).has("like-degrees"));
-  CHECK_FALSE(outcome_of_files(scan(0, 0, 0, 10)).has("like-degrees"));
+    const Outcome outcome = outcome_of_files({{"a.xyz", text}}, {.unit = row.unit});
+    CHECK((outcome.codes.find("like-degrees") != std::string::npos) == row.is_warned);
+  }
 }
