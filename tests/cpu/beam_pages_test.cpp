@@ -5,8 +5,7 @@
 #include "core/seen/beams.hpp"
 #include "support/beam_scenes.hpp"
 #include "support/catch.hpp"
-#include "support/engines/beam_runs.hpp"
-#include "support/engines/section_runs.hpp"
+#include "support/engines/page_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/section_scene.hpp"
 

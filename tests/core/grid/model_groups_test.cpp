@@ -14,12 +14,9 @@ using namespace clearway::test;
 
 namespace {
 
-auto coordinates(const Vec3& p) { return std::tuple(p.x, p.y, p.z); }
-
 std::vector<Vec3> sorted(std::span<const Vec3> points) {
   std::vector<Vec3> out(points.begin(), points.end());
-  std::sort(out.begin(), out.end(),
-            [](const Vec3& a, const Vec3& b) { return coordinates(a) < coordinates(b); });
+  std::ranges::sort(out, {}, [](const Vec3& p) { return std::tuple(p.x, p.y, p.z); });
   return out;
 }
 
