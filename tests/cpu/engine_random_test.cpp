@@ -75,7 +75,7 @@ TEST_CASE("random scenes with every kind of model") {
 
 TEST_CASE("slow paths, on which bounds last") {
   std::uint64_t with_hits = 0;
-  constexpr std::uint64_t kSlowScenes = kScenes / 6;
+  constexpr std::uint64_t kSlowScenes = kScenes / 10;
   for (std::uint64_t seed = 1; seed <= kSlowScenes; ++seed) {
     CAPTURE(seed);
     PlainScene scene = slow_scene(seed);

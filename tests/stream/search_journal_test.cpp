@@ -51,25 +51,26 @@ class JournalledScene {
   std::optional<SearchResult> sweep(std::uint64_t most_pages) {
     std::optional<JournalReader> read;
     if (is_journal(path)) read.emplace(path);
-    SearchJournal journal(path, kIdentity, read ? &*read : nullptr, scene.cloud, scene.query,
-                          kNever);
+    SearchJournal journal = opened(read ? &*read : nullptr);
     StoppingProgress progress(most_pages);
     ProfileSet profile = empty_result(scene.cloud, scene.query).profile;
     if (scene.query.profile > 0) journal.restore(profile);
-    bool is_whole = true;
+    std::optional<SearchResult> answer;
     try {
       run_journalled(journal, profile, progress);
+      answer = result_of(journal.rows(), scene.cloud, std::move(profile));
     } catch (const Interrupted&) {
-      is_whole = false;
     }
     begun += progress.calls;
-    if (!is_whole) return std::nullopt;
-    return result_of(journal.rows(), scene.cloud, std::move(profile));
+    return answer;
   }
 
-  /// Searches the cells that the journal does not have. Returns how many pages that were.
-  std::size_t run_journalled(SearchJournal& journal, ProfileSet& profile,
-                             Progress& progress) const {
+  SearchJournal opened(const JournalReader* read = nullptr) const {
+    return {path, kIdentity, read, scene.cloud, scene.query, kNever};
+  }
+
+  /// Searches the cells that the journal does not have.
+  void run_journalled(SearchJournal& journal, ProfileSet& profile, Progress& progress) const {
     std::vector<PlannedCell> cells = scene.cells;
     std::erase_if(cells, [&](const PlannedCell& cell) {
       return journal.rows().answered(cell.cell, PointQuestion::kHits);
@@ -82,7 +83,6 @@ class JournalledScene {
     const IgnoredPoints none(scene.cloud, scene.query);
     run_pages(scene.cloud, cells, pages, engines, {.ignored = none, .threads = 2},
               keep_answer(scene.cloud, journal.rows(), profile, &journal), progress, times);
-    return pages.size();
   }
 
   PlannedScene scene;
@@ -106,7 +106,7 @@ void open_with(const JournalledScene& s, const std::string& bytes) {
     writer.append(record);
   }
   const JournalReader read(s.path);
-  SearchJournal(s.path, kIdentity, &read, s.scene.cloud, s.scene.query, kNever);
+  s.opened(&read);
 }
 
 }  // namespace
@@ -204,7 +204,7 @@ TEST_CASE("a cell without hits costs a few bytes") {
   }();
   std::filesystem::remove(s.path);
   {
-    SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+    SearchJournal journal = s.opened();
     const CellRows none{.words = std::vector<std::uint64_t>(s.scene.cloud.blocks_per_cell())};
     journal.rows().add(1, {{PointQuestion::kHits, none}, {PointQuestion::kClearances, none}});
   }
@@ -213,13 +213,12 @@ TEST_CASE("a cell without hits costs a few bytes") {
 
 TEST_CASE("a journal that cannot grow ends the run with its error") {
   const JournalledScene s(false, 0);
-  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  SearchJournal journal = s.opened();
   ProfileSet none;
   NoProgress progress;
   {
     const FileSizeLimit limit(300);
-    check_refused([&] { return s.run_journalled(journal, none, progress); },
-                  "a.journal: cannot write");
+    check_refused([&] { s.run_journalled(journal, none, progress); }, "a.journal: cannot write");
   }
   const JournalReader read(s.path);  // the record that was cut off is a torn tail
   CHECK(read.records() > 0);
@@ -229,7 +228,7 @@ TEST_CASE("a journal that cannot grow ends the run with its error") {
 
 TEST_CASE("rows are read back from the journal, and a record that changes meanwhile is named") {
   const JournalledScene s(true, 0.3);
-  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  SearchJournal journal = s.opened();
   ProfileSet none;
   NoProgress progress;
   s.run_journalled(journal, none, progress);

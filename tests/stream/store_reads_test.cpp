@@ -1,8 +1,6 @@
 // A store that is read by calls, cell by cell, without its map.
 #include <unistd.h>
 
-#include <thread>
-
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/clouds.hpp"
@@ -86,20 +84,4 @@ TEST_CASE("a store that was cut short while open is refused with the byte where 
   REQUIRE(::truncate(small.path.c_str(), static_cast<off_t>(end)) == 0);
   check_refused([&] { return read(store, cell); },
                 std::string("a.h5 ... ends at byte ") + std::to_string(end));
-}
-
-TEST_CASE("threads read cells at the same time") {
-  const SmallStore small;
-  const StoreReader store(small.path);
-  {
-    std::vector<std::jthread> threads;
-    for (int t = 0; t < 4; ++t) {
-      threads.emplace_back([&] {
-        for (std::uint32_t i = 0; i < 20 * store.cells().size(); ++i) {
-          read(store, i % static_cast<std::uint32_t>(store.cells().size()));
-        }
-      });
-    }
-  }
-  CHECK(store.cells_touched() == store.cells().size());
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <optional>
 #include <type_traits>
 
 #include "core/geometry/inside.hpp"
@@ -69,6 +68,21 @@ struct AtPose {
            !solids_around(e).empty();
   }
 
+  /// Whether e is touched on the way to the next pose, both included, and counts at either.
+  bool touches_on_way(const AtPose& next, const Vec3& e) const {
+    if (!counts(e) && !next.counts(e)) return false;
+    if constexpr (std::is_same_v<Element, Vec3>) {
+      for (std::size_t m = 0; m < moved.size(); ++m) {
+        if (collides(e, moved[m], body.query.radius) ||
+            collides_inside(e, moved[m], next.moved[m], body.query.radius) ||
+            collides(e, next.moved[m], body.query.radius)) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
   /// The least d2 to an element; inside solids the signed square v of docs/design/solids.md, which
   /// is below 0.
   double squared(const Vec3& e) const {
@@ -111,19 +125,6 @@ struct AtPose {
   std::vector<Element> moved;
 };
 
-/// Whether e collides on the way from a pose to the next, both included, and counts at either.
-bool touches_on_way(const AtPose<Vec3>& from, const AtPose<Vec3>& to, const Vec3& e) {
-  if (!from.counts(e) && !to.counts(e)) return false;
-  const double radius = from.body.query.radius;
-  for (std::size_t m = 0; m < to.moved.size(); ++m) {
-    const Vec3 &a = from.moved[m], &b = to.moved[m];
-    if (collides(e, a, radius) || collides_inside(e, a, b, radius) || collides(e, b, radius)) {
-      return true;
-    }
-  }
-  return false;
-}
-
 /// Calls visit(e) for every point of the environment, on all cores where that is worth it.
 template <typename Visit>
 void for_points(std::span<const Vec3> environment, std::size_t elements, const Visit& visit) {
@@ -138,18 +139,14 @@ std::vector<std::uint32_t> first_poses(std::span<const Vec3> environment, const 
   const Body<Element> body(query);
   for (std::uint32_t i = 0; i < query.poses.size(); ++i) {
     const AtPose<Element> at(body, query.poses[i]);
-    std::optional<AtPose<Vec3>> next;
-    if constexpr (std::is_same_v<Element, Vec3>) {
-      if (query.between_poses && i + 1 < query.poses.size()) next.emplace(body, query.poses[i + 1]);
-    }
+    const bool moves_on = query.between_poses && i + 1 < query.poses.size();
+    const AtPose<Element> next(body, query.poses[moves_on ? i + 1 : i]);
     for_points(environment, body.elements.size(), [&](std::size_t e) {
-      if (first[e] != kNoPose) return;
-      bool touched = false;
-      if constexpr (std::is_same_v<Element, Vec3>) {
-        if (next) touched = touches_on_way(at, *next, environment[e]);
+      const Vec3& point = environment[e];
+      if (first[e] == kNoPose &&
+          (moves_on ? at.touches_on_way(next, point) : at.touches(point) && at.counts(point))) {
+        first[e] = i;
       }
-      if (!next) touched = at.touches(environment[e]) && at.counts(environment[e]);
-      if (touched) first[e] = i;
     });
   }
   return first;

@@ -102,7 +102,9 @@ TEST_CASE("field bounds hold and are tight near the model") {
   std::vector<Vec3> plane;
   for (int i = 0; i < 2500; ++i) plane.push_back({i % 50 * 0.02, i / 50 * 0.02, 0});
   check_field(plane, 0.1, 0);
-  check_field(random_triangles(30, {0, 0, 0}), 0.2, 0.15);
+  for (const std::size_t count : {1, 5, 30, 40}) {
+    check_field(random_triangles(count, {count % 2 == 0 ? 1000.0 : 0.0, 0, 0}), 0.2, 0.15);
+  }
   check_field(triangles_at(box_surface(kPartOfField), {1000, 0, 0}), 0.2, 0.15);
 }
 
