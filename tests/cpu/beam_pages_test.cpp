@@ -5,8 +5,7 @@
 #include "core/seen/beams.hpp"
 #include "support/beam_scenes.hpp"
 #include "support/catch.hpp"
-#include "support/engines/beam_runs.hpp"
-#include "support/engines/section_runs.hpp"
+#include "support/engines/page_runs.hpp"
 #include "support/memory_cloud.hpp"
 #include "support/section_scene.hpp"
 
@@ -30,8 +29,7 @@ struct BeamCloud {
       const std::int64_t* const origin = origins.data() + origins.size() - 3;
       Quantum q{};
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::int64_t at = kind == 1 ? origin[k] : beam.origin[k] + beam.way[k];
-        q[k] = static_cast<std::int32_t>(at);
+        q[k] = static_cast<std::int32_t>(kind == 1 ? origin[k] : beam.origin[k] + beam.way[k]);
       }
       points.push_back(q);
       origin_of.push_back(kind == 2 ? 0 : static_cast<std::uint32_t>(origins.size() / 3));
@@ -73,26 +71,21 @@ struct BeamCloud {
 
  private:
   void expect(const Quantum& q, const std::int64_t* origin) {
-    if (origin == nullptr) {
-      ++left_out.without_origin;
-      return;
-    }
     Beam beam{};
     double squared = 0;
-    bool is_short = true, any = false;
-    for (int k = 0; k < 3; ++k) {
+    bool is_short = true, is_point = true;
+    for (int k = 0; k < 3 && origin != nullptr; ++k) {
       beam.origin[k] = origin[k];
       beam.way[k] = q[static_cast<std::size_t>(k)] - origin[k];
-      is_short = is_short && beam.way[k] < (1LL << 30) && beam.way[k] > -(1LL << 30);
-      any = any || beam.way[k] != 0;
+      is_short = is_short && std::abs(beam.way[k]) < (1LL << 30);
+      is_point = is_point && beam.way[k] == 0;
       const double length = static_cast<double>(beam.way[k]) * quantisation.scale[k];
       squared += length * length;
     }
-    if (!is_short || squared > most * most) {
-      ++left_out.too_long;
-    } else if (any) {
-      followed.push_back(beam);
-    }
+    const bool is_too_long = !is_short || squared > most * most;
+    left_out.without_origin += origin == nullptr;
+    left_out.too_long += is_too_long;
+    if (!is_too_long && !is_point) followed.push_back(beam);
   }
 };
 

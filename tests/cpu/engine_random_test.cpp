@@ -1,92 +1,87 @@
-// Every engine against brute force on several hundred small random scenes.
-#include <cmath>
-
+// Every engine against brute force on hundreds of small random scenes.
+#include "engine_scenes.hpp"
 #include "support/catch.hpp"
-#include "support/engines/engines.hpp"
-#include "support/scenes.hpp"
+#include "support/compare.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
-Box random_box(Random& random, double largest) {
-  Box box{};
-  for (int k = 0; k < 3; ++k) {
-    box.lo[k] = -uniform(random, 0, largest);
-    box.hi[k] = below(random, 5) == 0 ? box.lo[k] : uniform(random, 0, largest);
-  }
-  return box;
-}
+#ifdef CLEARWAY_SANITIZED
+constexpr std::uint64_t kScenes = 100;  // with sanitizers each takes tens of times as long
+#else
+constexpr std::uint64_t kScenes = 600;
+#endif
 
-std::vector<Vec3> random_cloud(Random& random, const Box& box, std::size_t count) {
-  std::vector<Vec3> points = random_points(random, box, count);
-  switch (below(random, 4)) {
-    case 0:  // clusters
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        const Vec3& centre = points[i % 7 % points.size()];
-        for (int k = 0; k < 3; ++k) points[i][k] += 0.9 * (centre[k] - points[i][k]);
-      }
-      break;
-    case 1:  // duplicates
-      for (Vec3& p : points) p = points[below(random, points.size())];
-      break;
-    default:
-      break;
-  }
-  return points;
-}
-
-std::vector<Pose> random_path(Random& random, const Box& box, std::size_t count) {
-  std::vector<Pose> poses = smooth_path(random, box, count);
-  const std::uint64_t kind = below(random, 6);
-  for (Pose& pose : poses) {
-    if (kind == 0) pose = random_rotation(random, random_point(random, box));
-    if (kind == 1 && below(random, 4) == 0) pose = poses[below(random, poses.size())];
-    if (kind == 2) pose = printed_with_six_digits(pose);
-    if (kind == 3) pose = stretched(pose, {uniform(random, 0.2, 3), uniform(random, 0.2, 3), 1});
-    if (kind == 4) pose = rotation({0, 1, 0}, uniform(random, 0, 6), {0.1, 0.2, 0.3});
-  }
-  return poses;
-}
-
-std::uint64_t check_random_scene(std::uint64_t seed) {
-  Random random(seed);
-  const double size = std::exp(uniform(random, -3, 4));
-  const Box room = random_box(random, size);
-  const Box part = random_box(random, size * uniform(random, 0.01, 0.5));
-  const auto points = random_cloud(random, room, 1 + below(random, 1500));
-  const auto model = random_cloud(random, part, 1 + below(random, 80));
-  const std::size_t most = 2'000'000 / (points.size() * model.size());
-  auto poses = random_path(random, room, 1 + below(random, std::clamp<std::size_t>(most, 1, 90)));
-
-  const double scale = size * 1e-6;
-  Quantisation quantisation{{scale, scale, 2 * scale}, {0, 0, 0}};
-  const auto quanta = quantise(points, quantisation);
-  if (below(random, 3) == 0) {
-    const Vec3 offset{uniform(random, -5e6, 5e6), uniform(random, -5e6, 5e6), 1e3};
-    for (int k = 0; k < 3; ++k) {
-      quantisation.offset[k] += offset[k];
-      for (Pose& pose : poses) pose.translation[k] += offset[k];
+/// A room with two levels of even ground, along which many points are nearly the nearest at every
+/// pose; or a long load between walls between which it just fits.
+PlainScene slow_scene(std::uint64_t seed) {
+  const Kind kind{static_cast<int>(seed % 3)};
+  PlainScene scene(kind);
+  scene.random = Random(seed);
+  Random& random = scene.random;
+  EngineScene& all = scene;
+  std::vector<Vec3> places = random_points(random, kRoom, 100);
+  if (seed % 2 == 0) {
+    for (const double height : {-0.35, 0.02}) {
+      const auto ground = random_points(random, {{-4, -1, height}, {4, 1, height + 0.01}}, 150);
+      places.insert(places.end(), ground.begin(), ground.end());
     }
+    if (kind == Kind::kPoints) all.query.model.vertices.resize(25);
+    all.query.radius = 0.1;
+    all.query.poses = random_slow_path(random, 240);
+  } else {
+    const Surface load = box_surface({{-3, -0.4, -0.3}, {3, 0.5, 0.2}});
+    if (kind == Kind::kSurface) all.query.model = surface_model(load);
+    if (kind == Kind::kSolids) all.query.model = solid_model(load);
+    all.query.poses = slow_path(300, below(random, 2) == 0 ? 0.05 : 1e-3);
+    for (int i = 0; i < 200; ++i) {
+      const double off = i % 9 == 0 ? -0.3 : all.query.radius + uniform(random, -0.01, 0.1);
+      const double x = uniform(random, -1, 6);
+      places.push_back(i % 2 == 0 ? Vec3{x, 0.5 + off, uniform(random, -0.3, 0.2)}
+                                  : Vec3{x, uniform(random, -0.4, 0.5), 0.2 + off});
+    }
+    if (below(random, 4) == 0) stop_at(all.query.poses, 200, 100);
+    if (below(random, 4) == 0) drive_back(all.query.poses);
   }
-  const double radius = size * std::exp(uniform(random, -5, 0));
-  const std::uint32_t cell_points = std::uint32_t{64} << below(random, 6);
-  return check_engines(quanta, quantisation, {model, poses, {radius}},
-                       {cell_points, below(random, 2) * 300});
+  scene.set_points(places);
+  if (below(random, 5) == 0) stretch(all.query.poses, {2.5, 0.3, 1.7});
+  if (below(random, 5) == 0) print_with_six_digits(all.query.poses);
+  if (below(random, 4) == 0) scene.move_far_away({5e6, 2e6, 1e3});
+  if (below(random, 3) == 0) all.query.floor = below(random, 2) == 0 ? -0.3 : 0.15;
+  return scene;
 }
 
 }  // namespace
 
-TEST_CASE("random scenes") {
-#ifdef CLEARWAY_SANITIZED
-  constexpr std::uint64_t kScenes = 100;  // with sanitizers each takes tens of times as long
-#else
-  constexpr std::uint64_t kScenes = 200;
-#endif
-  std::uint64_t with_hits = 0;
+TEST_CASE("random scenes with every kind of model") {
+  std::uint64_t with_hits = 0, with_floor = 0, less = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
-    with_hits += check_random_scene(seed) > 0;
+    Random random(seed);
+    EngineScene scene = random_scene(random, Kind{static_cast<int>(seed % 3)});
+    const std::uint64_t hits =
+        check_engines(scene, {.packings = {random_packing(random)}}).colliding();
+    with_hits += hits > 0;
+    if (!scene.query.floor) continue;
+    ++with_floor;
+    scene.query.floor.reset();
+    less += hits < Expected(scene).colliding();
   }
-  CHECK(with_hits > kScenes / 4);
+  CHECK(with_hits > kScenes / 3);
+  CHECK(less > with_floor / 3);
+}
+
+TEST_CASE("slow paths, on which bounds last") {
+  std::uint64_t with_hits = 0;
+  constexpr std::uint64_t kSlowScenes = kScenes / 10;
+  for (std::uint64_t seed = 1; seed <= kSlowScenes; ++seed) {
+    CAPTURE(seed);
+    PlainScene scene = slow_scene(seed);
+    const Asked asked{.reach = seed % 4 == 0 ? 2.0 : 0.5,
+                      .packings = {random_packing(scene.random)}};
+    with_hits += check_engines(scene, asked).colliding() > 0;
+  }
+  CHECK(with_hits > kSlowScenes / 3);
 }

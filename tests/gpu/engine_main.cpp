@@ -9,22 +9,24 @@
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "support/catch.hpp"
-#include "support/engines/beam_runs.hpp"
 #include "support/engines/engines.hpp"
 #include "support/engines/grid_runs.hpp"
-#include "support/engines/section_runs.hpp"
+#include "support/engines/page_runs.hpp"
+#include "support/engines/sweep_runs.hpp"
 
 namespace clearway {
 namespace {
 
-SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
-  const GridRun run{.threads = threads};
-  HitSet hits = run_grid(
-      cloud, query, run, [&](const GridScene& scene, std::uint64_t page_bytes, const auto& run_in) {
-        CudaGridEngine engine(0, scene, {run.slots, page_bytes, run.cells_a_page});
-        return run_in(engine);
-      });
-  return {std::move(hits), ClearanceSet()};
+SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int threads, double) {
+  const auto slots = 1 + static_cast<std::uint32_t>(cloud.cells().size() % 3);
+  return run_grid(cloud, query, {.slots = slots, .threads = threads},
+                  [&](const GridScene& scene, const SlotLayout& layout, const RunIn& run_in) {
+                    CudaGridEngine engine(0, scene, layout);
+                    CHECK(engine.slots() == slots);
+                    CHECK(engine.device_bytes() ==
+                          cuda_grid_bytes(scene) + slots * cuda_grid_slot_bytes(scene, layout));
+                    return run_in(engine);
+                  });
 }
 
 SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads,
@@ -65,20 +67,25 @@ SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query,
   return search();
 }
 
-BeamRun beams_on_cuda(const PackedCloud& cloud, const Beams& beams) {
-  std::vector<PlannedCell> cells;
-  for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) cells.push_back({cell, {}});
-  const SlotLayout layout{2, smallest_page_bytes(cloud, cells) * kBeamPageCells, kBeamPageCells};
-  CudaBeamEngine engine(0, beams, cloud, layout);
-  CHECK(engine.device_bytes() ==
-        cuda_beam_bytes(beams) + layout.slots * cuda_beam_slot_bytes(beams, cloud, layout));
+/// Runs the cells of a cloud through an engine that answers nothing page by page.
+void run_quietly(const PackedCloud& cloud, const std::vector<PlannedCell>& cells,
+                 const SlotLayout& layout, const IgnoredPoints& ignored, PageEngine& engine) {
   PageEngine* const lane = &engine;
   NoProgress silent;
   StageTimes times;
   run_pages(
-      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), {&lane, 1},
-      {.stage = "beams", .ignored = IgnoredPoints(cloud, {}), .threads = 2},
+      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()),
+      {&lane, 1}, {.stage = "pages", .ignored = ignored, .threads = 2},
       [](std::span<const PlannedCell>, const PageResult&) {}, silent, times);
+}
+
+BeamRun beams_on_cuda(const PackedCloud& cloud, const Beams& beams) {
+  const std::vector<PlannedCell> cells = all_cells(cloud);
+  const SlotLayout layout{2, smallest_page_bytes(cloud, cells) * kPageCells, kPageCells};
+  CudaBeamEngine engine(0, beams, cloud, layout);
+  CHECK(engine.device_bytes() ==
+        cuda_beam_bytes(beams) + layout.slots * cuda_beam_slot_bytes(beams, cloud, layout));
+  run_quietly(cloud, cells, layout, IgnoredPoints(cloud, {}), engine);
   return {engine.words(), engine.counts()};
 }
 
@@ -86,18 +93,12 @@ void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
                      const SectionRef& section) {
   const std::vector<PlannedCell> cells = section_cells(cloud, section);
   if (cells.empty()) return;
-  const SlotLayout layout{2, smallest_page_bytes(cloud, cells, ignored.any()) * kSectionPageCells,
-                          kSectionPageCells};
+  const SlotLayout layout{2, smallest_page_bytes(cloud, cells, ignored.any()) * kPageCells,
+                          kPageCells};
   CudaSectionEngine engine(0, section, cloud, layout);
   CHECK(engine.device_bytes() ==
         cuda_section_bytes(section) + layout.slots * cuda_section_slot_bytes(cloud, layout));
-  PageEngine* const lane = &engine;
-  NoProgress silent;
-  StageTimes times;
-  run_pages(
-      cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()),
-      {&lane, 1}, {.stage = "section", .ignored = ignored, .threads = 2},
-      [](std::span<const PlannedCell>, const PageResult&) {}, silent, times);
+  run_quietly(cloud, cells, layout, ignored, engine);
   engine.read_entries({section.entries, section.entry_count()});
 }
 
@@ -105,14 +106,11 @@ void section_on_cuda(const PackedCloud& cloud, const IgnoredPoints& ignored,
 }  // namespace clearway
 
 int main(int count, char** arguments) {
-  clearway::test_only(
-      {{"sweep on CUDA", clearway::run_exactly<clearway::sweep_on_cuda>, true,
-        clearway::sweep_on_cuda},
-       {"sweep on CUDA with kept cells", clearway::run_exactly<clearway::sweep_with_kept_cells>,
-        true, clearway::sweep_with_kept_cells},
-       {"grid on CUDA", clearway::grid_on_cuda, false}});
-  clearway::follow_pages_with(clearway::beams_on_cuda);
-  clearway::block_pages_with(clearway::section_on_cuda);
+  clearway::engines() = {{"sweep on CUDA", clearway::sweep_on_cuda, true},
+                         {"sweep on CUDA with kept cells", clearway::sweep_with_kept_cells, true},
+                         {"grid on CUDA", clearway::grid_on_cuda, false}};
+  clearway::follow_pages = clearway::beams_on_cuda;
+  clearway::block_pages = clearway::section_on_cuda;
   return run_catch(count, arguments, [] {
     return clearway::cuda_device_count() == 0 ? "no CUDA device here" : nullptr;
   });

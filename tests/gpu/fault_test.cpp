@@ -12,6 +12,7 @@
 #include "gpu/devices.hpp"
 #include "library/api_scene.hpp"
 #include "support/catch.hpp"
+#include "support/scenes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -24,9 +25,9 @@ Remedy remedy_of_failure(const Session& session, const Query& query,
   try {
     for (int i = 0; i < 50; ++i) session.search(query, options);
   } catch (const ResourceError& error) {
-    const std::string what = error.what();
-    return what.find("can use the GPU no more") == std::string::npos ? Remedy::kNone
-                                                                     : error.remedy();
+    const bool is_named =
+        std::string(error.what()).find("can use the GPU no more") != std::string::npos;
+    return is_named ? error.remedy() : Remedy::kNone;
   }
   return Remedy::kNone;
 }
@@ -40,7 +41,7 @@ TEST_CASE("a fault in a kernel ends questions on that GPU with an error, and not
   query.clearance = 0.3;
   query.poses.clear();
   for (int i = 0; i < 5000; ++i) {
-    query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.004 * i, 0.04, 0.2}});
+    query.poses.push_back(translation({0.004 * i, 0.04, 0.2}));
   }
   const SessionAnswer expected = Session(store, {.device = Device::kCpu}).search(query);
   REQUIRE(expected.collisions().size() > 0);
@@ -61,12 +62,13 @@ TEST_CASE("a fault in a kernel ends questions on that GPU with an error, and not
     if (!faulty.exchange(true)) fault_on_device();
   }};
   std::atomic<int> failed = 0;
-  const auto ask = [&] {
-    if (remedy_of_failure(asked_for, query, with_fault) == Remedy::kNewProcess) ++failed;
-  };
   {
     std::vector<std::jthread> asking;
-    for (int i = 0; i < 4; ++i) asking.emplace_back(ask);
+    for (int i = 0; i < 4; ++i) {
+      asking.emplace_back([&] {
+        failed += remedy_of_failure(asked_for, query, with_fault) == Remedy::kNewProcess;
+      });
+    }
   }
   CHECK(failed == 4);
   CHECK(faulty);

@@ -77,16 +77,17 @@ TEST_CASE("no row is put beside its place where the points change while they are
   convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5", 1000));
   const StoreReader store(folder / "a.h5");
   const Query query;
+  const auto fill = [&](AnswerRows& rows, std::uint64_t bits) {
+    const CellRows hits{.words = std::vector(store.blocks_per_cell() - 1, bits)};
+    for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
+      rows.add(cell, {{PointQuestion::kHits, hits}});
+    }
+  };
   RowsInMemory first;
   ChangingRows kept;
   kept.now = &first;
   AnswerRows answer(store, query, kept);
-  const auto rows_with = [&](std::uint64_t bits) {
-    return CellRows{.words = std::vector(store.blocks_per_cell() - 1, bits)};
-  };
-  for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-    answer.add(cell, {{PointQuestion::kHits, rows_with(0xff)}});
-  }
+  fill(answer, 0xff);
   NoProgress progress;
   GatherRows<Row> gather(store, answer, PointQuestion::kHits, progress);
   std::vector<Row> rows(answer.points(PointQuestion::kHits));
@@ -99,9 +100,7 @@ TEST_CASE("no row is put beside its place where the points change while they are
   for (const std::uint64_t bits : {std::uint64_t{0x7f}, std::uint64_t{0xfffff}}) {
     RowsInMemory others;
     AnswerRows other(store, query, others);
-    for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-      other.add(cell, {{PointQuestion::kHits, rows_with(bits)}});
-    }
+    fill(other, bits);
     kept.now = &others;
     CHECK_THROWS_AS(call(), InputError);
   }

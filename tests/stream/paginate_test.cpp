@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cstdint>
-#include <set>
+#include <map>
 
 #include "clearway/error.hpp"
 #include "core/page/page_pool.hpp"
@@ -9,18 +9,16 @@
 #include "stream/plan.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-PageShape shape_alone(const PackedCloud& cloud, const PlannedCell& cell) {
-  return {.cells = 1,
-          .blocks_per_cell = cloud.blocks_per_cell(),
-          .nodes = static_cast<std::uint32_t>(cell.nodes.size()),
-          .payload_bytes = cloud.packed_bytes(cell.cell)};
+void add_cell(PageShape& shape, const PackedCloud& cloud, const PlannedCell& cell) {
+  ++shape.cells;
+  shape.nodes += static_cast<std::uint32_t>(cell.nodes.size());
+  shape.payload_bytes += cloud.packed_bytes(cell.cell);
 }
 
 /// Checks that every cell is in one page, in order, that sizes are right and within the bounds, and
@@ -35,18 +33,12 @@ void check_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
     CHECK(page.shape.cells <= most_cells);
     CHECK(page.shape.bytes() <= page_bytes);
     PageShape sum{.blocks_per_cell = cloud.blocks_per_cell()};
-    for (const PlannedCell& cell : page.of(cells)) {
-      sum.nodes += static_cast<std::uint32_t>(cell.nodes.size());
-      sum.payload_bytes += cloud.packed_bytes(cell.cell);
-      ++sum.cells;
-    }
+    for (const PlannedCell& cell : page.of(cells)) add_cell(sum, cloud, cell);
     CHECK(page.shape.nodes == sum.nodes);
     CHECK(page.shape.payload_bytes == sum.payload_bytes);
     next += page.shape.cells;
     if (next == cells.size()) continue;
-    ++sum.cells;
-    sum.nodes += static_cast<std::uint32_t>(cells[next].nodes.size());
-    sum.payload_bytes += cloud.packed_bytes(cells[next].cell);
+    add_cell(sum, cloud, cells[next]);
     CHECK((sum.cells > most_cells || sum.bytes() > page_bytes));
   }
   CHECK(next == cells.size());
@@ -72,7 +64,9 @@ TEST_CASE("the smallest page holds the largest cell and no less") {
   const PlannedScene scene;
   std::uint64_t largest = 0;
   for (const PlannedCell& cell : scene.cells) {
-    largest = std::max(largest, shape_alone(scene.cloud, cell).bytes());
+    PageShape alone{.blocks_per_cell = scene.cloud.blocks_per_cell()};
+    add_cell(alone, scene.cloud, cell);
+    largest = std::max(largest, alone.bytes());
   }
   const std::uint64_t least = smallest_page_bytes(scene.cloud, scene.cells);
   CHECK(least == largest);
@@ -100,11 +94,10 @@ TEST_CASE("no cells make no pages") {
 
 TEST_CASE("slots are disjoint, aligned and as large as they say") {
   const PlannedScene scene;
+  const std::uint64_t blocks = scene.cloud.blocks_per_cell(), entries = scene.cloud.cell_entries();
   for (const bool first_pose : {false, true}) {
     for (const double clearance : {0.0, 0.5}) {
-      Query query = scene.query;
-      query.first_pose = first_pose;
-      query.clearance = clearance;
+      const Query query({}, {}, {.first_pose = first_pose, .clearance = clearance});
       const SlotLayout layout{3, 1001, 5};
       PagePool pool(scene.cloud, query, layout);
       std::uint64_t bytes = 0;
@@ -115,17 +108,14 @@ TEST_CASE("slots are disjoint, aligned and as large as they say") {
         check_equal(reinterpret_cast<std::uintptr_t>(page.data()) % kPageAlignment, 0);
         CHECK((last == nullptr || page.data() >= last));
         last = page.data() + page.size();
-        check_equal(pool.hits(slot).size(), 5 * scene.cloud.blocks_per_cell());
-        check_equal(pool.first_poses(slot).size(),
-                    (first_pose ? 5 * scene.cloud.cell_entries() : 0));
-        check_equal(pool.clearances(slot).size(),
-                    (clearance > 0 ? 5 * scene.cloud.cell_entries() : 0));
+        check_equal(pool.hits(slot).size(), 5 * blocks);
+        check_equal(pool.first_poses(slot).size(), first_pose ? 5 * entries : 0);
+        check_equal(pool.clearances(slot).size(), clearance > 0 ? 5 * entries : 0);
         std::uint64_t found = 0;
         for (const std::uint64_t size :
              {pool.hits(slot).size_bytes(), pool.clearances(slot).size_bytes(),
               pool.first_poses(slot).size_bytes()}) {
-          if (size > 0)
-            found = divide_up(found, ArrayRun::kAlignment) * ArrayRun::kAlignment + size;
+          if (size > 0) found = ArrayRun::aligned(found) + size;
         }
         bytes += page.size() + found;
       }
@@ -134,54 +124,36 @@ TEST_CASE("slots are disjoint, aligned and as large as they say") {
   }
 }
 
-TEST_CASE("a plan names every cell once, in the order of the first poses") {
+TEST_CASE("every cell with a colliding point is planned once, in the order of its first poses") {
   const PlannedScene scene;
-  std::set<std::uint32_t> seen;
+  const auto& nodes = scene.motion.nodes();
+  std::map<std::uint32_t, const PlannedCell*> planned;
   std::uint32_t last = 0;
   for (const PlannedCell& cell : scene.cells) {
-    CHECK(seen.insert(cell.cell).second);
+    CHECK(planned.emplace(cell.cell, &cell).second);
     REQUIRE_FALSE(cell.nodes.empty());
-    const std::uint32_t first = scene.motion.nodes()[cell.nodes.front()].first;
-    CHECK(first >= last);
-    last = first;
-  }
-  CHECK(seen.size() > 5);
-  CHECK(seen.size() < scene.cloud.cells().size());
-}
-
-TEST_CASE("the nodes of a planned cell are disjoint, in the order of their poses") {
-  const PlannedScene scene;
-  for (const PlannedCell& cell : scene.cells) {
-    std::uint32_t end = 0;
+    CHECK(nodes[cell.nodes.front()].first >= last);
+    last = nodes[cell.nodes.front()].first;
+    std::uint32_t end = 0;  // the nodes are disjoint, in the order of their poses
     for (const std::uint32_t index : cell.nodes) {
-      const MotionNode& node = scene.motion.nodes()[index];
-      CHECK(node.first >= end);
-      end = node.first + node.count;
+      CHECK(nodes[index].first >= end);
+      end = nodes[index].first + nodes[index].count;
     }
-    CHECK(end <= scene.poses.size());
+    CHECK(end <= scene.query.poses.size());
   }
-}
-
-TEST_CASE("every cell with a colliding point is planned, with the point's first pose") {
-  const PlannedScene scene;
-  const auto first_poses =
-      brute_force_first_poses(positions_of(scene.cloud_points, kTenths), scene.query);
-  std::uint64_t colliding = 0;
-  for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
-    if (!scene.cloud.is_used(slot)) continue;
-    const std::uint32_t pose = first_poses[scene.cloud.source(slot)];
+  CHECK(planned.size() > 5);
+  CHECK(planned.size() < scene.cloud.cells().size());
+  for (std::uint64_t entry = 0; entry < scene.cloud.entry_count(); ++entry) {
+    if (!scene.cloud.is_used(entry)) continue;
+    const std::uint32_t pose = scene.expected.first_poses(false)[scene.cloud.source(entry)];
     if (pose == kNoPose) continue;
-    ++colliding;
-    const auto cell = std::find_if(
-        scene.cells.begin(), scene.cells.end(),
-        [&](const PlannedCell& c) { return c.cell == slot / scene.cloud.cell_entries(); });
-    REQUIRE(cell != scene.cells.end());
-    CHECK(std::any_of(cell->nodes.begin(), cell->nodes.end(), [&](std::uint32_t index) {
-      const MotionNode& node = scene.motion.nodes()[index];
-      return node.first <= pose && pose < node.first + node.count;
+    const PlannedCell& cell =
+        *planned.at(static_cast<std::uint32_t>(entry / scene.cloud.cell_entries()));
+    CHECK(std::ranges::any_of(cell.nodes, [&](std::uint32_t index) {
+      return nodes[index].first <= pose && pose < nodes[index].first + nodes[index].count;
     }));
   }
-  CHECK(colliding > 20);
+  CHECK(scene.expected.colliding() > 20);
 }
 
 TEST_CASE("nothing is planned without points or without poses") {

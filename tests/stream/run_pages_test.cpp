@@ -1,39 +1,132 @@
-// The pipeline of pages: its answer against brute force, and how its stages share the work.
+// The pipeline of pages: its answer against brute force, how its stages share the work, and how it
+// ends when one of them throws.
+#include "stream/run_pages.hpp"
+
+#include <future>
 #include <new>
+#include <thread>
 
 #include "clearway/error.hpp"
-#include "run_fixture.hpp"
+#include "cpu/sweep_engine.hpp"
+#include "planned_scene.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/engines/brute_force.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
 
-/// The number of entries whose first pose or clearance is not that of brute force.
-std::uint64_t wrong_slots(const PlannedScene& scene, const SearchResult& answer) {
-  const auto points = positions_of(scene.cloud_points, kTenths);
-  const auto first_poses = brute_force_first_poses(points, scene.query);
-  const auto clearances = scene.query.clearance > 0 ? brute_force_clearances(points, scene.query)
-                                                    : std::vector<Clearance>(points.size());
-  const double limit = scene.query.clearance * scene.query.clearance;
-  std::uint64_t wrong = 0;
-  for (std::uint64_t slot = 0; slot < scene.cloud.entry_count(); ++slot) {
-    const bool used = scene.cloud.is_used(slot);
-    const std::uint32_t pose = used ? first_poses[scene.cloud.source(slot)] : kNoPose;
-    wrong += answer.hits.contains(slot) != (pose != kNoPose);
-    if (scene.query.first_pose) wrong += answer.hits.first_pose(slot) != pose;
-    if (scene.query.clearance > 0) {
-      Clearance expected;
-      if (used && clearances[scene.cloud.source(slot)].squared < limit) {
-        expected = clearances[scene.cloud.source(slot)];
-      }
-      wrong += answer.clearances.at(slot) != expected;
-    }
+using Act = std::function<void(std::uint32_t)>;
+
+/// An engine that searches in threads of its own, as a device does, and calls a test's function
+/// before each step. It counts every use of a slot that its contract does not allow.
+class TestEngine final : public PageEngine {
+ public:
+  TestEngine(const PlannedScene& scene, const SlotLayout& layout)
+      : engine_(scene.cloud, scene.filter, layout), searches_(layout.slots) {}
+
+  ~TestEngine() override {
+    for (const auto& search : searches_) violations += search.valid();
   }
-  return wrong;
+
+  std::uint32_t slots() const override { return engine_.slots(); }
+
+  std::span<std::byte> page(std::uint32_t slot) override {
+    violations += searches_[slot].valid();
+    return engine_.page(slot);
+  }
+
+  void start(std::uint32_t slot, const PageShape& shape) override {
+    const std::uint32_t page = started++;
+    violations += searches_[slot].valid() || shape.bytes() > engine_.page(slot).size();
+    if (before_start) before_start(page);
+    searches_[slot] = std::async(std::launch::async, [this, slot, shape, page] {
+      if (in_search) in_search(page);
+      engine_.start(slot, shape);
+      return engine_.finish(slot);
+    });
+  }
+
+  void wait(std::uint32_t slot) override {
+    if (searches_[slot].valid()) searches_[slot].wait();
+  }
+
+  PageResult finish(std::uint32_t slot) override {
+    const std::uint32_t page = finished++;
+    if (!searches_[slot].valid()) {
+      ++violations;
+      return {};
+    }
+    PageResult answer = searches_[slot].get();
+    if (after_finish) after_finish(page);
+    const auto now = Clock::now();
+    answer.upload = {now - std::chrono::milliseconds(1), now};
+    return answer;
+  }
+
+  bool pages_alike() const override { return alike; }
+
+  bool alike = true;
+  Act before_start, in_search, after_finish;
+  std::atomic<std::uint32_t> started{0}, finished{0};
+  static inline std::atomic<int> violations{0};
+
+ private:
+  SweepEngine engine_;
+  std::vector<std::future<PageResult>> searches_;
+};
+
+class TestProgress final : public Progress {
+ public:
+  void begin(std::string_view, std::uint64_t points, std::string_view) override { total = points; }
+  void advance(std::uint64_t points) override {
+    const std::uint32_t call = calls++;
+    if (before_advance) before_advance(call);
+    done += points;
+  }
+  void end() override { ended = true; }
+
+  Act before_advance;
+  std::atomic<std::uint32_t> calls{0};
+  std::atomic<std::uint64_t> total{0}, done{0};
+  bool ended = false;
+};
+
+/// One run of the pipeline, with access to its parts. The scene's cloud calls what the last run
+/// set.
+struct Run {
+  explicit Run(const PlannedScene& planned, std::uint32_t slots = 4, std::uint32_t page_cells = 3)
+      : scene(planned),
+        layout{slots, 2 * smallest_page_bytes(planned.cloud, planned.cells), page_cells},
+        engine(planned, layout),
+        pages(paginate(planned.cloud, planned.cells, layout.page_bytes, page_cells)) {
+    scene.cloud.reads = 0;
+    scene.cloud.before_read = {};
+  }
+
+  SearchResult run(int threads = 4, TestEngine* another = nullptr) {
+    PageEngine* const engines[] = {&engine, another};
+    return run_pages(scene.cloud, scene.cells, pages, {engines, another == nullptr ? 1U : 2U},
+                     scene.query, threads, progress, times);
+  }
+
+  const PlannedScene& scene;
+  SlotLayout layout;
+  TestEngine engine;
+  std::vector<PlannedPage> pages;
+  TestProgress progress;
+  StageTimes times;
+};
+
+void sleep_ms(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
+
+/// A function that throws at call `n`.
+template <typename Exception>
+Act throwing_at(std::uint32_t n, const char* what) {
+  return [=](std::uint32_t call) {
+    if (call == n) throw Exception(what);
+  };
 }
 
 }  // namespace
@@ -49,9 +142,9 @@ TEST_CASE("the answer does not depend on slots, cells a page or threads") {
           CAPTURE(slots, page_cells, threads);
           Run run(*scene, slots, page_cells);
           run.engine.alike = threads % 2 == 0;
-          const SearchResult answer = run.run(threads);
-          check_equal(wrong_slots(*scene, answer), 0);
+          check_equal(scene->wrong(run.run(threads)), 0);
           CHECK(run.engine.finished == run.pages.size());
+          CHECK(scene->cloud.reads == scene->cells.size());  // each planned cell once, no other
           CHECK(run.progress.done == run.progress.total);
           CHECK(run.progress.total > 0);
           CHECK(run.progress.ended);
@@ -62,20 +155,12 @@ TEST_CASE("the answer does not depend on slots, cells a page or threads") {
   CHECK(TestEngine::violations == 0);
 }
 
-TEST_CASE("every planned cell is read once and no other") {
-  const PlannedScene scene;
-  Run run(scene);
-  run.run();
-  CHECK(run.cloud.reads == scene.cells.size());
-}
-
 TEST_CASE("an empty cloud, and a plan of no cells, have an empty answer") {
   for (const std::size_t points : {0, 1000}) {
     const PlannedScene scene({256, 0}, points, 0);
     REQUIRE(scene.cells.empty());
     Run run(scene);
-    const SearchResult answer = run.run();
-    check_equal(answer.hits.count(), 0);
+    check_equal(run.run().hits.count(), 0);
     CHECK(run.engine.started == 0);
     check_equal(run.times.compute, 0);
     CHECK(run.progress.ended);
@@ -85,12 +170,11 @@ TEST_CASE("an empty cloud, and a plan of no cells, have an empty answer") {
 TEST_CASE("slow stages change nothing and are measured") {
   const PlannedScene scene({256, 0}, 4000);
   Run run(scene, 3, 2);
-  run.cloud.before_read = [](std::uint32_t read) { sleep_ms(read % 3 == 0 ? 4 : 1); };
+  scene.cloud.before_read = [](std::uint32_t read) { sleep_ms(read % 3 == 0 ? 4 : 1); };
   run.engine.before_start = [](std::uint32_t page) { sleep_ms(page % 2); };
   run.engine.in_search = [](std::uint32_t page) { sleep_ms(page % 4); };
   run.progress.before_advance = [](std::uint32_t call) { sleep_ms(call % 3); };
-  const SearchResult answer = run.run();
-  check_equal(wrong_slots(scene, answer), 0);
+  check_equal(scene.wrong(run.run()), 0);
   CHECK(run.times.read > 0.003);
   CHECK(run.times.read <= run.times.total);
   CHECK(run.times.upload > 0.0009);
@@ -113,7 +197,7 @@ TEST_CASE("pages that are not alike do not wait behind a slow one") {
       before_slow = run.progress.calls.load();
     }
   };
-  check_equal(wrong_slots(scene, run.run(8)), 0);
+  check_equal(scene.wrong(run.run(8)), 0);
   CHECK(before_slow > run.pages.size() / 2);
 }
 
@@ -124,101 +208,66 @@ TEST_CASE("of two engines the faster one gets more pages, and the answer is the 
     TestEngine slow(scene, run.layout);
     REQUIRE(run.pages.size() > 40);
     slow.in_search = [](std::uint32_t) { sleep_ms(100); };
-    const SearchResult answer = run.run_with(slow, threads);
-    check_equal(wrong_slots(scene, answer), 0);
+    check_equal(scene.wrong(run.run(threads, &slow)), 0);
     CHECK(run.engine.finished + slow.finished == run.pages.size());
     if (threads > 2) CHECK(4U * slow.finished < run.engine.finished);
   }
   CHECK(TestEngine::violations == 0);
 }
 
-// When a stage of the pipeline throws, the run ends with that exception, and nothing is left under
-// way.
-namespace {
-
-/// A function that throws at call `n`.
-template <typename Exception>
-Act throwing_at(std::uint32_t n, const std::string& what) {
-  return [=](std::uint32_t call) {
-    if (call == n) throw Exception(what);
+TEST_CASE("what any stage throws ends the run with its message, and no search is left under way") {
+  struct Stage {
+    const char* message;
+    void (*fail)(Run& run, std::uint32_t at, const char* message);
   };
-}
-
-}  // namespace
-
-TEST_CASE("what any stage throws ends the run with its message") {
+  const Stage stages[] = {{"read failed",
+                           [](Run& run, std::uint32_t at, const char* message) {
+                             run.scene.cloud.before_read = throwing_at<InputError>(at, message);
+                           }},
+                          {"start failed",
+                           [](Run& run, std::uint32_t at, const char* message) {
+                             run.engine.before_start = throwing_at<ResourceError>(at, message);
+                           }},
+                          {"search failed",
+                           [](Run& run, std::uint32_t at, const char* message) {
+                             run.engine.in_search = throwing_at<std::runtime_error>(at, message);
+                           }},
+                          {"finish failed",
+                           [](Run& run, std::uint32_t at, const char* message) {
+                             run.engine.after_finish = throwing_at<ResourceError>(at, message);
+                           }},
+                          {"collect failed", [](Run& run, std::uint32_t at, const char* message) {
+                             run.progress.before_advance = throwing_at<Error>(at, message);
+                           }}};
   const PlannedScene scene;
   for (const std::uint32_t slots : {1U, 2U, 5U}) {
     for (const std::uint32_t at : {0U, 1U, 6U}) {
-      for (const int stage : {0, 1, 2, 3, 4}) {
-        CAPTURE(slots, at, stage);
+      for (const auto& [message, fail] : stages) {
+        CAPTURE(slots, at);
         Run run(scene, slots, 1);
         run.engine.alike = (slots + at) % 2 == 0;
         REQUIRE(run.pages.size() > 10);
-        if (stage == 0) run.cloud.before_read = throwing_at<InputError>(at, "read failed");
-        if (stage == 1) run.engine.before_start = throwing_at<ResourceError>(at, "start failed");
-        if (stage == 2) run.engine.in_search = throwing_at<ResourceError>(at, "search failed");
-        if (stage == 3) run.engine.after_finish = throwing_at<ResourceError>(at, "finish failed");
-        if (stage == 4) run.progress.before_advance = throwing_at<Error>(at, "collect failed");
-        const char* messages[] = {"read failed", "start failed", "search failed", "finish failed",
-                                  "collect failed"};
-        CHECK_THROWS_WITH(run.run(), messages[stage]);
+        fail(run, at, message);
+        CHECK_THROWS_WITH(run.run(), message);
       }
     }
   }
-  CHECK(TestEngine::violations == 0);  // the end of every search was awaited
-}
-
-TEST_CASE("pages under way are finished before an exception leaves, however slow") {
-  const PlannedScene scene;
-  Run run(scene, 6, 1);
-  run.cloud.before_read = throwing_at<InputError>(9, "read failed");
-  run.engine.in_search = [](std::uint32_t) { sleep_ms(20); };
-  CHECK_THROWS_WITH(run.run(8), "read failed");
-  CHECK(run.engine.finished == run.engine.started);
-  CHECK(TestEngine::violations == 0);
-}
-
-TEST_CASE("several stages that fail at once end the run with one of their messages") {
-  const PlannedScene scene;
-  Run run(scene, 6, 1);
-  run.cloud.before_read = [](std::uint32_t read) {
-    if (read >= 4) throw InputError("one of them");
-  };
-  run.engine.in_search = [](std::uint32_t page) {
-    if (page >= 1) throw InputError("one of them");
-  };
-  CHECK_THROWS_WITH(run.run(8), "one of them");
-  CHECK(TestEngine::violations == 0);
-}
-
-TEST_CASE("an exception that is not ours passes too") {
-  const PlannedScene scene;
-  Run run(scene);
-  run.engine.in_search = [](std::uint32_t page) {
-    if (page == 2) throw std::bad_alloc();
-  };
-  CHECK_THROWS_AS(run.run(), std::bad_alloc);
-}
-
-TEST_CASE("a damaged cell in the middle ends the run and is named") {
-  PlannedScene scene;
-  const std::uint32_t damaged = scene.cells[scene.cells.size() / 2].cell;
-  scene.cloud.damage(damaged);
-  Run run(scene);
-  check_refused([&] { return run.run(); }, "cell " + std::to_string(damaged));
   CHECK(TestEngine::violations == 0);
 }
 
 TEST_CASE(
-    "what one of two engines throws ends the run, and nothing is left in flight in the other") {
+    "several stages of two engines that fail at once end the run with one of their messages") {
   const PlannedScene scene({64, 0}, 6000);
-  for (const std::uint32_t at : {0U, 3U}) {
+  for (const std::uint32_t at : {0U, 3U, 9U}) {
     Run run(scene, 3, 1);
     TestEngine another(scene, run.layout);
-    run.engine.in_search = throwing_at<ResourceError>(at, "search failed");
-    another.in_search = [](std::uint32_t) { sleep_ms(10); };
-    CHECK_THROWS_WITH(run.run_with(another, 4), "search failed");
+    const auto fail = [at](std::uint32_t call) {
+      if (call >= at) throw InputError("one of them");
+    };
+    scene.cloud.before_read = at == 9 ? Act(fail) : Act();
+    run.engine.in_search = fail;
+    another.in_search = [](std::uint32_t) { sleep_ms(20); };
+    CHECK_THROWS_WITH(run.run(8, &another), "one of them");
     CHECK(run.engine.finished == run.engine.started);
     CHECK(another.finished == another.started);
   }

@@ -40,21 +40,6 @@ class StoppingProgress final : public Progress {
 
 constexpr auto kNoStop = std::numeric_limits<std::uint64_t>::max();
 
-std::uint64_t difference(const PackedCloud& cloud, const SearchResult& a, const SearchResult& b,
-                         const Query& query) {
-  std::uint64_t differ = 0;
-  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-    differ += a.hits.contains(slot) != b.hits.contains(slot);
-    if (query.first_pose) differ += a.hits.first_pose(slot) != b.hits.first_pose(slot);
-    if (query.clearance > 0) differ += a.clearances.at(slot) != b.clearances.at(slot);
-  }
-  differ += a.profile.poses() != b.profile.poses();
-  for (std::uint64_t pose = 0; pose < std::min(a.profile.poses(), b.profile.poses()); ++pose) {
-    differ += a.profile.at(pose) != b.profile.at(pose);
-  }
-  return differ;
-}
-
 /// One query, answered with a journal from run to run.
 class JournalledScene {
  public:
@@ -66,25 +51,26 @@ class JournalledScene {
   std::optional<SearchResult> sweep(std::uint64_t most_pages) {
     std::optional<JournalReader> read;
     if (is_journal(path)) read.emplace(path);
-    SearchJournal journal(path, kIdentity, read ? &*read : nullptr, scene.cloud, scene.query,
-                          kNever);
+    SearchJournal journal = opened(read ? &*read : nullptr);
     StoppingProgress progress(most_pages);
     ProfileSet profile = empty_result(scene.cloud, scene.query).profile;
     if (scene.query.profile > 0) journal.restore(profile);
-    bool is_whole = true;
+    std::optional<SearchResult> answer;
     try {
       run_journalled(journal, profile, progress);
+      answer = result_of(journal.rows(), scene.cloud, std::move(profile));
     } catch (const Interrupted&) {
-      is_whole = false;
     }
     begun += progress.calls;
-    if (!is_whole) return std::nullopt;
-    return result_of(journal.rows(), scene.cloud, std::move(profile));
+    return answer;
   }
 
-  /// Searches the cells that the journal does not have. Returns how many pages that were.
-  std::size_t run_journalled(SearchJournal& journal, ProfileSet& profile,
-                             Progress& progress) const {
+  SearchJournal opened(const JournalReader* read = nullptr) const {
+    return {path, kIdentity, read, scene.cloud, scene.query, kNever};
+  }
+
+  /// Searches the cells that the journal does not have.
+  void run_journalled(SearchJournal& journal, ProfileSet& profile, Progress& progress) const {
     std::vector<PlannedCell> cells = scene.cells;
     std::erase_if(cells, [&](const PlannedCell& cell) {
       return journal.rows().answered(cell.cell, PointQuestion::kHits);
@@ -97,7 +83,6 @@ class JournalledScene {
     const IgnoredPoints none(scene.cloud, scene.query);
     run_pages(scene.cloud, cells, pages, engines, {.ignored = none, .threads = 2},
               keep_answer(scene.cloud, journal.rows(), profile, &journal), progress, times);
-    return pages.size();
   }
 
   PlannedScene scene;
@@ -121,7 +106,7 @@ void open_with(const JournalledScene& s, const std::string& bytes) {
     writer.append(record);
   }
   const JournalReader read(s.path);
-  SearchJournal(s.path, kIdentity, &read, s.scene.cloud, s.scene.query, kNever);
+  s.opened(&read);
 }
 
 }  // namespace
@@ -131,42 +116,33 @@ TEST_CASE("a sweep stopped again and again gives the answer of one that was not"
     for (const double clearance : {0.0, 0.3}) {
       const double profile = first_pose ? 0 : 0.5 - clearance;
       CAPTURE(first_pose, clearance, profile);
-      JournalledScene whole(first_pose, clearance, profile);
-      JournalledScene parts(first_pose, clearance, profile);
-      const std::optional<SearchResult> expected = whole.sweep(kNoStop);
-      REQUIRE(expected);
-      REQUIRE(expected->hits.count() > 100);
-      REQUIRE((expected->profile.count() > 50) == (profile > 0));
+      JournalledScene s(first_pose, clearance, profile);
+      REQUIRE(s.scene.expected.colliding() > 100);
       std::optional<SearchResult> answer;
       int runs = 0;
       while (!answer) {
-        answer = parts.sweep(5);
+        answer = s.sweep(5);
         REQUIRE(++runs < 200);
       }
       CHECK(runs > 5);
-      CHECK(parts.begun == whole.scene.cells.size());  // no cell was searched twice
-      check_equal(difference(whole.scene.cloud, *answer, *expected, whole.scene.query), 0);
-      const std::optional<SearchResult> again = parts.sweep(0);  // nothing is left to do
-      REQUIRE(again);
-      check_equal(difference(whole.scene.cloud, *again, *expected, whole.scene.query), 0);
-      CHECK(hits_in(parts.path) == whole.scene.cells.size());
+      CHECK(s.begun == s.scene.cells.size());  // no cell was searched twice
+      check_equal(s.scene.wrong(*answer), 0);
+      CHECK((answer->profile.count() > 50) == (profile > 0));
+      check_equal(s.scene.wrong(s.sweep(0).value()), 0);  // nothing is left to do
+      CHECK(hits_in(s.path) == s.scene.cells.size());
     }
   }
 }
 
 TEST_CASE("a sweep with a profile goes on from a journal cut at any record") {
   JournalledScene s(false, 0, 0.4);
-  const std::optional<SearchResult> expected = s.sweep(kNoStop);
-  REQUIRE(expected);
-  REQUIRE(expected->profile.count() > 50);
+  s.sweep(kNoStop);
   const std::string whole = bytes_of(s.path);
   std::uint64_t finished = 0;
   for (std::size_t bytes = whole.size(); bytes > 200; bytes -= whole.size() / 40) {
     put_bytes(s.path, whole.substr(0, bytes));
     finished += hits_in(s.path);
-    const std::optional<SearchResult> answer = s.sweep(kNoStop);
-    REQUIRE(answer);
-    check_equal(difference(s.scene.cloud, *answer, *expected, s.scene.query), 0);
+    check_equal(s.scene.wrong(s.sweep(kNoStop).value()), 0);
   }
   CHECK(finished > 100);
 }
@@ -178,44 +154,46 @@ TEST_CASE("records that are not of the cloud and the query are refused") {
   const std::string hits_of_cell0("\1\1\0\0", 4);  // a cell, one question, the hits, cell 0
   const std::string word0("\1\0", 2);              // one word, the first
   const std::string cell0 = hits_of_cell0 + word0;
-  CHECK_NOTHROW(open_with(set, cell0 + bits));
-  CHECK_NOTHROW(open_with(poses, cell0 + bits + pose));
-  const auto refused = [](const JournalledScene& scene, const std::string& bytes,
-                          const std::string& what) {
-    check_refused([&] { return open_with(scene, bytes); },
-                  std::string("record 1 at byte ... ") + what);
-  };
-  refused(set, "", "ends too early");
-  refused(set, "\7", "unknown kind");
-  refused(set, cell0 + none, "points that the store does not have");
-  refused(set, cell0 + bits + "x", "longer than what it holds");
-  refused(set, cell0 + bits.substr(1), "ends too early");
-  refused(set, std::string("\1\1\0\xff\xff\x7f\0", 7), "a cell that the store does not have");
-  refused(set, std::string("\1\1\1\0\0", 5), "a question that was not asked");
-  refused(set, std::string("\1\1\x20\0\0", 5), "a question that is unknown");
-  refused(set, std::string("\1\x20", 2), "more questions than there are");
-  refused(set, hits_of_cell0 + std::string("\1\1", 2) + bits, "a block past its cell's end");
-  refused(set, hits_of_cell0 + std::string("\2\0", 2) + bits + '\0' + bits,
-          "a block past its cell's end");
-  refused(poses, cell0 + bits + std::string("\xff\x7f\0\0", 4), "a pose past the trajectory's end");
   // Cell 0 with two questions: no hits, and a clearance
   const std::string clearance = std::string("\1\2\0\1\0\0", 6) + word0 + bits + pose;
   const auto distance = [](double squared) {
     return std::string(reinterpret_cast<const char*>(&squared), sizeof squared);
   };
+  CHECK_NOTHROW(open_with(set, cell0 + bits));
+  CHECK_NOTHROW(open_with(poses, cell0 + bits + pose));
   CHECK_NOTHROW(open_with(clearances, clearance + distance(0.01)));
-  for (const double squared :
-       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    refused(clearances, clearance + distance(squared), "a distance that is none");
-    refused(profile, "\2\1\5" + distance(squared) + '\7', "a distance that is none");
-  }
   CHECK_NOTHROW(open_with(profile, "\2\1\5" + distance(0.01) + '\7'));
-  refused(profile, "\2\1\5" + distance(0.25) + '\7', "a distance that is none");
-  refused(profile, "\2\2\5" + distance(0.01) + '\7', "ends too early");
-  refused(profile, "\2\1\xff\x7f" + distance(0.01) + '\7', "a pose past the trajectory's end");
-  refused(profile, "\2\1\5" + distance(0.01) + "\xff\xff\x7f",
-          "a point that the store does not have");
-  refused(set, "\2\1\5" + distance(0.01) + '\7', "of a profile that was not asked for");
+  struct Row {
+    const JournalledScene& scene;
+    std::string bytes, words;
+  };
+  std::vector<Row> rows{
+      {set, "", "ends too early"},
+      {set, "\7", "unknown kind"},
+      {set, cell0 + none, "points that the store does not have"},
+      {set, cell0 + bits + "x", "longer than what it holds"},
+      {set, cell0 + bits.substr(1), "ends too early"},
+      {set, {"\1\1\0\xff\xff\x7f\0", 7}, "a cell that the store does not have"},
+      {set, {"\1\1\1\0\0", 5}, "a question that was not asked"},
+      {set, {"\1\1\x20\0\0", 5}, "a question that is unknown"},
+      {set, {"\1\x20", 2}, "more questions than there are"},
+      {set, hits_of_cell0 + std::string("\1\1", 2) + bits, "a block past its cell's end"},
+      {set, hits_of_cell0 + std::string("\2\0", 2) + bits + '\0' + bits,
+       "a block past its cell's end"},
+      {poses, cell0 + bits + std::string("\xff\x7f\0\0", 4), "a pose past the trajectory's end"},
+      {profile, "\2\1\5" + distance(0.25) + '\7', "a distance that is none"},
+      {profile, "\2\2\5" + distance(0.01) + '\7', "ends too early"},
+      {profile, "\2\1\xff\x7f" + distance(0.01) + '\7', "a pose past the trajectory's end"},
+      {profile, "\2\1\5" + distance(0.01) + "\xff\xff\x7f", "a point that the store does not have"},
+      {set, "\2\1\5" + distance(0.01) + '\7', "of a profile that was not asked for"}};
+  using Limits = std::numeric_limits<double>;
+  for (const double squared : {-1.0, Limits::quiet_NaN(), Limits::infinity()}) {
+    rows.push_back({clearances, clearance + distance(squared), "a distance that is none"});
+    rows.push_back({profile, "\2\1\5" + distance(squared) + '\7', "a distance that is none"});
+  }
+  for (const Row& row : rows) {
+    check_refused([&] { open_with(row.scene, row.bytes); }, "record 1 at byte ... " + row.words);
+  }
 }
 
 TEST_CASE("a cell without hits costs a few bytes") {
@@ -226,7 +204,7 @@ TEST_CASE("a cell without hits costs a few bytes") {
   }();
   std::filesystem::remove(s.path);
   {
-    SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+    SearchJournal journal = s.opened();
     const CellRows none{.words = std::vector<std::uint64_t>(s.scene.cloud.blocks_per_cell())};
     journal.rows().add(1, {{PointQuestion::kHits, none}, {PointQuestion::kClearances, none}});
   }
@@ -235,13 +213,12 @@ TEST_CASE("a cell without hits costs a few bytes") {
 
 TEST_CASE("a journal that cannot grow ends the run with its error") {
   const JournalledScene s(false, 0);
-  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  SearchJournal journal = s.opened();
   ProfileSet none;
   NoProgress progress;
   {
     const FileSizeLimit limit(300);
-    check_refused([&] { return s.run_journalled(journal, none, progress); },
-                  "a.journal: cannot write");
+    check_refused([&] { s.run_journalled(journal, none, progress); }, "a.journal: cannot write");
   }
   const JournalReader read(s.path);  // the record that was cut off is a torn tail
   CHECK(read.records() > 0);
@@ -251,35 +228,27 @@ TEST_CASE("a journal that cannot grow ends the run with its error") {
 
 TEST_CASE("rows are read back from the journal, and a record that changes meanwhile is named") {
   const JournalledScene s(true, 0.3);
-  SearchJournal journal(s.path, kIdentity, nullptr, s.scene.cloud, s.scene.query, kNever);
+  SearchJournal journal = s.opened();
   ProfileSet none;
   NoProgress progress;
   s.run_journalled(journal, none, progress);
   const AnswerRows& rows = journal.rows();
-  REQUIRE(rows.points(PointQuestion::kHits) > 100);
-  std::uint64_t hits = 0, clearances = 0;
-  for (const std::uint32_t cell : rows.cells(PointQuestion::kHits)) {
-    hits += rows.read(cell, PointQuestion::kHits).count();
+  const auto count = [&](PointQuestion question) {
+    std::uint64_t points = 0;
+    for (const std::uint32_t cell : rows.cells(question))
+      points += rows.read(cell, question).count();
+    return points;
+  };
+  for (const PointQuestion question : {PointQuestion::kHits, PointQuestion::kClearances}) {
+    CHECK(rows.points(question) > 100);
+    CHECK(count(question) == rows.points(question));
   }
-  for (const std::uint32_t cell : rows.cells(PointQuestion::kClearances)) {
-    clearances += rows.read(cell, PointQuestion::kClearances).count();
-  }
-  CHECK(hits == rows.points(PointQuestion::kHits));
-  CHECK(clearances == rows.points(PointQuestion::kClearances));
   CHECK(rows.read(0, PointQuestion::kNear).count() == 0);  // was not asked
   std::string bytes = bytes_of(s.path);
   bytes[bytes.size() / 2] ^= 1;
   put_bytes(s.path, bytes);
-  check_refused(
-      [&] {
-        for (const std::uint32_t cell : rows.cells(PointQuestion::kHits)) {
-          rows.read(cell, PointQuestion::kHits);
-        }
-        for (const std::uint32_t cell : rows.cells(PointQuestion::kClearances)) {
-          rows.read(cell, PointQuestion::kClearances);
-        }
-      },
-      "a.journal: the record at byte ... was changed");
+  check_refused([&] { return count(PointQuestion::kHits) + count(PointQuestion::kClearances); },
+                "a.journal: the record at byte ... was changed");
 }
 
 TEST_CASE("rows in memory ask for memory, and stop where there is none") {

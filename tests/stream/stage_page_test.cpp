@@ -7,24 +7,12 @@
 #include "stream/run_pages.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/engines/page_runs.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
 
 namespace {
-
-/// Memory for a page, whose bytes are set beforehand to values on which no page may depend.
-struct PageMemory {
-  PageMemory(std::uint64_t page_bytes, unsigned char before)
-      : words(page_bytes / sizeof(Word)), bytes(std::as_writable_bytes(std::span(words))) {
-    std::memset(bytes.data(), before, bytes.size());
-  }
-  struct alignas(kPageAlignment) Word {
-    std::byte bytes[kPageAlignment];
-  };
-  std::vector<Word> words;
-  std::span<std::byte> bytes;
-};
 
 /// Checks that the page holds what the cloud holds of every cell, value for value.
 void check_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, const PageRef& page) {
@@ -79,9 +67,9 @@ TEST_CASE("a staged page holds what the cloud does, whatever the bits of a value
     const MemoryCloud cloud = cloud_of_bits(bits, (bits * 7 + 3) % 33, 32 - bits, 205, 205);
     const auto cells = every_cell(cloud);
     PageMemory memory(smallest_page_bytes(cloud, cells), 0xff);
-    const PageShape shape = stage_page(cloud, cells, memory.bytes);
+    const PageShape shape = stage_page(cloud, cells, memory.bytes());
     CHECK(cloud.coordinates(0)[0].minbits() == bits);
-    check_page(cloud, cells, {memory.bytes.data(), shape});
+    check_page(cloud, cells, {memory.bytes().data(), shape});
   }
 }
 
@@ -92,13 +80,13 @@ TEST_CASE("pages of several cells hold each of them, whatever the memory held be
     for (const PlannedPage& planned : pages) {
       PageMemory a(planned.shape.bytes(), 0xff), b(planned.shape.bytes() + 4096, 0x5a);
       const auto cells = planned.of(scene.cells);
-      const PageShape shape = stage_page(scene.cloud, cells, a.bytes);
+      const PageShape shape = stage_page(scene.cloud, cells, a.bytes());
       CHECK(shape.bytes() == planned.shape.bytes());
-      check_page(scene.cloud, cells, {a.bytes.data(), shape});
-      stage_page(scene.cloud, cells, b.bytes);
-      check_equal(std::memcmp(a.bytes.data(), b.bytes.data(), shape.bytes()), 0);
-      for (std::size_t i = shape.bytes(); i < b.bytes.size(); ++i) {
-        if (b.bytes[i] != std::byte{0x5a}) FAIL("written past the page");
+      check_page(scene.cloud, cells, {a.bytes().data(), shape});
+      stage_page(scene.cloud, cells, b.bytes());
+      check_equal(std::memcmp(a.bytes().data(), b.bytes().data(), shape.bytes()), 0);
+      for (std::size_t i = shape.bytes(); i < b.bytes().size(); ++i) {
+        if (b.bytes()[i] != std::byte{0x5a}) FAIL("written past the page");
       }
     }
   }
@@ -109,7 +97,7 @@ TEST_CASE("a damaged cell is not staged") {
   const PlannedCell& damaged = scene.cells[scene.cells.size() / 2];
   scene.cloud.damage(damaged.cell);
   PageMemory memory(smallest_page_bytes(scene.cloud, scene.cells), 0);
-  CHECK_THROWS_AS(stage_page(scene.cloud, std::span(&damaged, 1), memory.bytes), InputError);
+  CHECK_THROWS_AS(stage_page(scene.cloud, std::span(&damaged, 1), memory.bytes()), InputError);
 }
 
 namespace {
@@ -122,19 +110,21 @@ Interval interval(int begin_ms, int end_ms) {
 }  // namespace
 
 TEST_CASE("busy time is the length of the union of the intervals") {
-  check_equal(busy_seconds({}), 0);
-  CHECK(busy_seconds({interval(10, 30)}) == Approx(0.020));
-  CHECK(busy_seconds({interval(10, 30), interval(40, 50)}) == Approx(0.030));
-  CHECK(busy_seconds({interval(40, 50), interval(10, 30), interval(20, 45)}) == Approx(0.040));
-  CHECK(busy_seconds({interval(10, 100), interval(20, 30), interval(40, 50)}) == Approx(0.090));
-  CHECK(busy_seconds({interval(10, 30), interval(30, 40)}) == Approx(0.030));
-  CHECK(busy_seconds({interval(10, 30), interval(10, 30)}) == Approx(0.020));
-}
-
-TEST_CASE("intervals that were never set, and ends before begins, are no time") {
-  CHECK(busy_seconds({Interval{}, interval(10, 20), Interval{}}) == Approx(0.010));
-  check_equal(busy_seconds({interval(20, 10)}), 0);
-  CHECK(busy_seconds({interval(0, 30), interval(20, 10), interval(25, 40)}) == Approx(0.040));
+  struct Row {
+    std::vector<Interval> intervals;
+    int ms;
+  };
+  for (const auto& [intervals, ms] :
+       {Row{{}, 0}, Row{{interval(10, 30)}, 20}, Row{{interval(10, 30), interval(40, 50)}, 30},
+        Row{{interval(40, 50), interval(10, 30), interval(20, 45)}, 40},
+        Row{{interval(10, 100), interval(20, 30), interval(40, 50)}, 90},
+        Row{{interval(10, 30), interval(30, 40)}, 30},
+        Row{{interval(10, 30), interval(10, 30)}, 20},
+        // Intervals that were never set, and ends before begins, are no time.
+        Row{{Interval{}, interval(10, 20), Interval{}}, 10}, Row{{interval(20, 10)}, 0},
+        Row{{interval(0, 30), interval(20, 10), interval(25, 40)}, 40}}) {
+    CHECK(busy_seconds(intervals) == Approx(ms * 1e-3));
+  }
 }
 
 TEST_CASE("each stage's time is its own") {

@@ -1,8 +1,6 @@
 // A store that is read by calls, cell by cell, without its map.
 #include <unistd.h>
 
-#include <thread>
-
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/clouds.hpp"
@@ -36,9 +34,10 @@ std::vector<std::byte> read(const StoreReader& store, std::uint32_t cell) {
 
 }  // namespace
 
-TEST_CASE("cells read from the file are those of the map") {
+TEST_CASE("cells read from the file are those of the map, and count as touched once") {
   const SmallStore small;
   const StoreReader store(small.path), mapped(small.path);
+  check_equal(store.cells_touched(), 0);
   std::uint64_t wrong = 0;
   for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
     std::vector<std::byte> bytes(store.packed_bytes(cell));
@@ -51,19 +50,12 @@ TEST_CASE("cells read from the file are those of the map") {
     }
   }
   check_equal(wrong, 0);
-  CHECK(store.cells_touched() == store.cells().size());
-  CHECK(store.bytes_read().coordinates == mapped.bytes_read().coordinates);
-}
-
-TEST_CASE("a cell counts as touched once, and its bytes whenever they are read") {
-  const SmallStore small;
-  const StoreReader store(small.path);
-  check_equal(store.cells_touched(), 0);
-  read(store, 3);
+  const std::uint64_t once = mapped.bytes_read().coordinates;
+  CHECK(store.bytes_read().coordinates == once);
   read(store, 3);
   store.coordinates(3);
-  check_equal(store.cells_touched(), 1);
-  CHECK(store.bytes_read().coordinates == 3 * store.packed_bytes(3));
+  CHECK(store.cells_touched() == store.cells().size());
+  CHECK(store.bytes_read().coordinates == once + 2 * store.packed_bytes(3));
 }
 
 TEST_CASE("a flipped bit in any of the three chunks is found and named") {
@@ -92,27 +84,4 @@ TEST_CASE("a store that was cut short while open is refused with the byte where 
   REQUIRE(::truncate(small.path.c_str(), static_cast<off_t>(end)) == 0);
   check_refused([&] { return read(store, cell); },
                 std::string("a.h5 ... ends at byte ") + std::to_string(end));
-}
-
-TEST_CASE("threads read cells at the same time") {
-  const SmallStore small;
-  const StoreReader store(small.path);
-  std::vector<std::thread> threads;
-  std::atomic<int> wrong{0};
-  for (int t = 0; t < 4; ++t) {
-    threads.emplace_back([&] {
-      for (int round = 0; round < 20; ++round) {
-        for (std::uint32_t cell = 0; cell < store.cells().size(); ++cell) {
-          try {
-            read(store, cell);
-          } catch (const Error&) {
-            ++wrong;
-          }
-        }
-      }
-    });
-  }
-  for (std::thread& thread : threads) thread.join();
-  CHECK(wrong == 0);
-  CHECK(store.cells_touched() == store.cells().size());
 }

@@ -115,89 +115,51 @@ std::vector<Vec3> places_of(const StoreReader& store) {
 
 }  // namespace
 
-TEST_CASE("collisions and clearances written in several passes give the bytes of one") {
+TEST_CASE("a result has the same bytes, however many passes and threads write it") {
   const Site site;
   const MadeAnswer made(site.store());
-  const FoundAnswer& answer = made.found;
   const ResultHeader header = header_of(site.store());
-  const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
-  for (const std::uint64_t memory : {0, 1, 5'000'000, 12'000'000}) {
-    CAPTURE(memory);
-    CHECK((site.written(answer, header, memory) == once));
+  constexpr std::uint64_t kMuch = std::uint64_t{1} << 30;
+  const std::string once = site.written(made.found, header, kMuch, 1);
+  for (const auto& [memory, threads] : std::vector<std::pair<std::uint64_t, int>>{
+           {kMuch, 2}, {kMuch, 16}, {0, 1}, {0, 3}, {1, 0}, {5'000'000, 2}, {12'000'000, 0}}) {
+    CAPTURE(memory, threads);
+    CHECK((site.written(made.found, header, memory, threads) == once));
   }
 
   const std::vector<Vec3> places = places_of(site.store());
   const ResultReader result = site.result();
-  Clearances batch;
+  Clearances all, batch;
+  std::optional<FoundPlace> least;
   std::uint64_t wrong = 0, source = 0;
   for (RowStream<Clearances> stream(result); stream.read(batch);) {
     for (std::size_t i = 0; i < batch.size(); ++i, ++source) {
       if (source % 5 == 2) ++source;
       wrong += batch.source[i] != source || batch.pose[i] != pose_of(source) ||
                batch.distance[i] != std::sqrt(squared_of(source)) || batch.xyz[i] != places[source];
+      if (!least || batch.distance[i] < least->distance) {
+        least = {batch.source[i], batch.pose[i], batch.xyz[i], batch.distance[i]};
+      }
+      all.source.push_back(batch.source[i]);
+      all.xyz.push_back(batch.xyz[i]);
+      all.distance.push_back(batch.distance[i]);
+      all.pose.push_back(batch.pose[i]);
     }
   }
   check_equal(wrong, 0);
   CHECK(source == kPoints);
-}
 
-TEST_CASE("any number of threads writes the same bytes") {
-  const Site site;
-  const MadeAnswer made(site.store());
-  const FoundAnswer& answer = made.found;
-  const ResultHeader header = header_of(site.store());
-  const std::string once = site.written(answer, header, std::uint64_t{1} << 30, 1);
-  for (const int threads : {2, 3, 16}) {
-    CAPTURE(threads);
-    CHECK((site.written(answer, header, std::uint64_t{1} << 30, threads) == once));
-    CHECK((site.written(answer, header, 0, threads) == once));
-  }
-}
-
-TEST_CASE("rows that are appended give the bytes of rows that are written from a search") {
-  const Site site;
-  const MadeAnswer made(site.store());
-  const FoundAnswer& answer = made.found;
-  const ResultHeader header = header_of(site.store());
-  const std::string once = site.written(answer, header, std::uint64_t{1} << 30);
-  const ResultReader result = site.result();
   const Collisions rows = read_rows(result);
-  Clearances clearances, batch;
-  for (RowStream<Clearances> stream(result); stream.read(batch);) {
-    clearances.source.insert(clearances.source.end(), batch.source.begin(), batch.source.end());
-    clearances.xyz.insert(clearances.xyz.end(), batch.xyz.begin(), batch.xyz.end());
-    clearances.distance.insert(clearances.distance.end(), batch.distance.begin(),
-                               batch.distance.end());
-    clearances.pose.insert(clearances.pose.end(), batch.pose.begin(), batch.pose.end());
-  }
-  const ScratchFolder folder;
-  write_result(folder / "again.h5", header, rows, 7001, clearances);
-  CHECK((bytes_of(folder / "again.h5") == once));
-}
-
-TEST_CASE("writing a result gives the places that reading it gives") {
-  const Site site;
-  const MadeAnswer made(site.store());
-  const FoundAnswer& answer = made.found;
-  site.written(answer, header_of(site.store()), 0);
-  const ResultReader result = site.result();
-  const Collisions rows = read_rows(result);
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (rows.first_pose[i] < rows.first_pose[first]) first = i;
-  }
-  std::optional<FoundPlace> least;
-  Clearances batch;
-  for (RowStream<Clearances> stream(result); stream.read(batch);) {
-    for (std::size_t i = 0; i < batch.size(); ++i) {
-      if (least && batch.distance[i] >= least->distance) continue;
-      least = {batch.source[i], batch.pose[i], batch.xyz[i], batch.distance[i]};
-    }
-  }
+  const auto first =
+      static_cast<std::size_t>(std::ranges::min_element(rows.first_pose) - rows.first_pose.begin());
+  const FoundPlace first_place{rows.source[first], rows.first_pose[first], rows.xyz[first], 0};
   CHECK(site.found().colliding_points == result.collisions());
   CHECK(site.found().clearance_points == result.clearances());
-  CHECK(site.found().first_place ==
-        FoundPlace{rows.source[first], rows.first_pose[first], rows.xyz[first], 0});
+  CHECK(site.found().first_place == first_place);
   CHECK(site.found().least_clearance == least);
   CHECK_FALSE(site.found().least_profile);
+
+  const ScratchFolder folder;  // rows that are appended give the same bytes, too
+  write_result(folder / "again.h5", header, rows, 7001, all);
+  CHECK((bytes_of(folder / "again.h5") == once));
 }

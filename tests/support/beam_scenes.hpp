@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <random>
 #include <span>
@@ -46,14 +45,15 @@ inline bool sees_by_definition(const CubeLattice& lattice, const Beam& beam, con
 
 /// Bricks with some of their cubes, and beams around them.
 struct BeamScene {
-  explicit BeamScene(unsigned seed) : random(seed) {
+  /// most_away: quanta; how far the bricks may lie from 0.
+  explicit BeamScene(unsigned seed, std::int64_t most_away = 3'000'000) : random(seed) {
     for (int k = 0; k < 3; ++k) {
       // Sides of 4 quanta have an inner cube of two, and unequal scales give unequal sides.
       lattice.side[k] = pick(0, 3) == 0 ? pick(4, 9) : pick(4, 300);
       lattice.inset[k] = lattice.side[k] / 4;
       // Also far from 0, as coordinates of a map projection are, and below it.
       corner[k] = static_cast<std::int32_t>(
-          pick(0, 2) == 0 ? pick(-4, 4) : pick(-3000000, 3000000) / lattice.side[k]);
+          pick(0, 2) == 0 ? pick(-4, 4) : pick(-most_away, most_away) / lattice.side[k]);
     }
     for (std::int32_t x = 0; x < 3; ++x) {
       for (std::int32_t y = 0; y < 3; ++y) {
@@ -96,24 +96,6 @@ struct BeamScene {
     }
     if (out.way[0] == 0 && out.way[1] == 0 && out.way[2] == 0) out.way[pick(0, 2)] = 1;
     return out;
-  }
-
-  /// The bits of the cubes that none of the beams sees, word by word.
-  std::vector<std::uint64_t> left_by(const std::vector<Beam>& beams) const {
-    const BrickMap map(lattice, bricks, words);
-    for (const Beam& beam : beams) map.ref().see(beam);
-    return {map.words().begin(), map.words().end()};
-  }
-
-  /// Calls visit(cube) for each cube whose bit is set.
-  template <typename Visit>
-  void each_cube(const std::vector<std::uint64_t>& bits, const Visit& visit) const {
-    for (std::size_t w = 0; w < bits.size(); ++w) {
-      for (std::uint64_t rest = bits[w]; rest != 0; rest &= rest - 1) {
-        const auto bit = static_cast<std::uint32_t>(std::countr_zero(rest));
-        visit(bricks[w / kBrickWords].cube(static_cast<std::uint32_t>(w % kBrickWords) * 64 + bit));
-      }
-    }
   }
 
   std::mt19937 random;

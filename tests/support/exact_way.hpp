@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "clearway/vec3.hpp"
+#include "support/scenes.hpp"
 
 /// Distances on a way in whole numbers, for small whole coordinates. The code shares nothing with
 /// the predicate, and never rounds.
@@ -15,6 +16,15 @@ struct WholePoint {
     return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
   }
 };
+
+/// A random point, each of whose coordinates is from -size to size.
+inline WholePoint whole_point(Random& random, std::int64_t size) {
+  const auto coordinate = [&] {
+    return static_cast<std::int64_t>(below(random, static_cast<std::uint64_t>(2 * size + 1))) -
+           size;
+  };
+  return {coordinate(), coordinate(), coordinate()};
+}
 
 inline WholePoint operator-(const WholePoint& a, const WholePoint& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};

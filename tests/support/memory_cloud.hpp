@@ -14,7 +14,7 @@ namespace clearway {
 using MemoryCloudOptions = SmallCloud::Packing;
 
 /// A cloud in memory for tests and benchmarks: it may have classes, and cells that are damaged.
-class MemoryCloud final : public SmallCloud {
+class MemoryCloud : public SmallCloud {
  public:
   MemoryCloud(std::span<const Quantum> points, const Quantisation& quantisation,
               const MemoryCloudOptions& options = {})

@@ -115,4 +115,37 @@ std::vector<Pose> slow_path(int count, double bend) {
   return poses;
 }
 
+std::vector<Pose> random_slow_path(Random& random, std::size_t count) {
+  const auto maybe = [&](double most) {
+    return below(random, 2) == 0 ? 0 : uniform(random, -most, most);
+  };
+  const Vec3 speed{0.025 * uniform(random, -1, 1), maybe(0.01), maybe(0.005)};
+  const Vec3 swing{maybe(1), maybe(0.3), maybe(0.5)};
+  const double bend = maybe(4e-5), turn = maybe(0.02), far = maybe(0.7), roll = maybe(0.3);
+  const double pace = uniform(random, 0.02, 0.2), tremble = maybe(0.004), jump = maybe(1.5);
+  const std::size_t pause = below(random, 3) == 0 ? 50 : 1, leg = 20 + below(random, 100);
+  const double away = below(random, 6) == 0 ? 1000 : 0;
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto t = static_cast<double>(i - i % pause);
+    const double s = t - static_cast<double>(count) / 2, angle = turn * t;
+    const double along[3] = {std::cos(angle), std::sin(angle), 0};
+    Vec3 at{0.2, 0.3, 0.3};
+    for (int k = 0; k < 3; ++k) {
+      at[k] += s * speed[k] + std::sin(pace * t) * swing[k] + far * along[k];
+    }
+    at.y += bend * s * s + tremble * static_cast<double>(i % 7);
+    if (i / leg % 2 == 1) at.x += jump + (i / leg == 3 ? away : 0);
+    Pose pose = rotation({0, 0, 1}, angle, at);
+    const double c = std::cos(roll * std::sin(0.2 * t)), r = std::sin(roll * std::sin(0.2 * t));
+    for (int row = 0; row < 3; ++row) {  // rolls about x before it turns about z
+      const double y = pose.rotation[3 * row + 1], z = pose.rotation[3 * row + 2];
+      pose.rotation[3 * row + 1] = c * y + r * z;
+      pose.rotation[3 * row + 2] = c * z - r * y;
+    }
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
 }  // namespace clearway

@@ -47,4 +47,8 @@ std::vector<Pose> smooth_path(Random& random, const Box& box, std::size_t count)
 /// bend radians.
 std::vector<Pose> slow_path(int count, double bend);
 
+/// A path of small steps, on which what was proven at one pose holds at many more: straight on,
+/// bent, turning about any place, to and fro, rolling, climbing, trembling, with stops and jumps.
+std::vector<Pose> random_slow_path(Random& random, std::size_t count);
+
 }  // namespace clearway

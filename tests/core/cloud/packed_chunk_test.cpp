@@ -11,8 +11,6 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr std::uint32_t kSizes[] = {2, 7, 64, 1000};
-
 /// A chunk's bytes at the very end of a block of the heap, where a sanitizer sees every read past
 /// them.
 class ExactBytes {
@@ -33,7 +31,7 @@ template <typename Value>
 std::vector<std::byte> plainly_packed(const std::vector<Value>& values, unsigned minbits) {
   using Unsigned = std::make_unsigned_t<Value>;
   std::vector<std::byte> payload(values.size() * minbits / 8 + 1);
-  const auto least = static_cast<Unsigned>(*std::min_element(values.begin(), values.end()));
+  const auto least = static_cast<Unsigned>(*std::ranges::min_element(values));
   std::size_t bit = 0;
   for (const Value value : values) {
     const auto delta = static_cast<Unsigned>(static_cast<Unsigned>(value) - least);
@@ -44,13 +42,20 @@ std::vector<std::byte> plainly_packed(const std::vector<Value>& values, unsigned
   return payload;
 }
 
-/// Reads every value one by one, and whole and partial runs from every offset (of long chunks: from
-/// many).
+/// Packs values and reads them one by one, and in whole and partial runs from every offset (of long
+/// chunks: from many).
 template <typename Value>
-void check_reading(const PackedChunk<Value>& chunk, const std::vector<Value>& values) {
+void check_round_trip(const std::vector<Value>& values, unsigned minbits) {
+  CAPTURE(values.size(), minbits);
+  const ExactBytes bytes(packed(values));
+  REQUIRE(bytes.span().size() == packed_bytes<Value>(values.size(), minbits));
+  const PackedChunk<Value> chunk(bytes.span(), static_cast<std::uint32_t>(values.size()));
   REQUIRE(chunk.size() == values.size());
-  if (chunk.minbits() < kValueBits<Value>) {
-    REQUIRE(chunk.minimum() == *std::min_element(values.begin(), values.end()));
+  REQUIRE(chunk.minbits() == minbits);
+  if (minbits < kValueBits<Value>) {
+    REQUIRE(chunk.minimum() == *std::ranges::min_element(values));
+    REQUIRE(std::ranges::equal(bytes.span().subspan(kPackedHeaderBytes),
+                               plainly_packed(values, minbits)));
   }
   std::vector<Value> out(values.size());
   for (std::uint32_t i = 0; i < values.size(); ++i) out[i] = chunk[i];
@@ -67,23 +72,9 @@ void check_reading(const PackedChunk<Value>& chunk, const std::vector<Value>& va
 }
 
 template <typename Value>
-void check_round_trip(const std::vector<Value>& values, unsigned minbits) {
-  CAPTURE(values.size(), minbits);
-  const ExactBytes bytes(packed(values));
-  REQUIRE(bytes.span().size() == packed_bytes<Value>(values.size(), minbits));
-  const PackedChunk<Value> chunk(bytes.span(), static_cast<std::uint32_t>(values.size()));
-  REQUIRE(chunk.minbits() == minbits);
-  if (minbits < kValueBits<Value>) {
-    const auto payload = bytes.span().subspan(kPackedHeaderBytes);
-    const auto expected = plainly_packed(values, minbits);
-    REQUIRE(std::equal(payload.begin(), payload.end(), expected.begin(), expected.end()));
-  }
-  check_reading(chunk, values);
-}
-
-template <typename Value>
 void check_span(std::make_unsigned_t<Value> span, unsigned minbits) {
-  for (const std::uint32_t size : kSizes) {
+  for (const std::uint32_t size : {2, 7, 64, 1000, 65536}) {  // the last is a full cell
+    if (size == 65536 && minbits % 8 != 1) continue;
     check_round_trip(values_of_span<Value>(size, span, size), minbits);
   }
 }
@@ -99,50 +90,26 @@ std::string refusal(const std::vector<std::byte>& bytes, std::uint32_t count) {
 
 }  // namespace
 
-TEMPLATE_TEST_CASE("packed values of every width read back", "", std::int32_t, std::uint64_t) {
-  for (unsigned bits = 0; bits <= kValueBits<TestType>; ++bits) {
-    check_span<TestType>(span_of_bits<TestType>(bits, bits), bits);
-  }
-}
-
-TEMPLATE_TEST_CASE("the widest spans are stored raw", "", std::int32_t, std::uint64_t) {
-  constexpr auto kMost = std::numeric_limits<std::make_unsigned_t<TestType>>::max();
-  for (const unsigned below : {0u, 1u, 2u, 3u}) {
-    check_span<TestType>(kMost - below, kValueBits<TestType>);
-  }
-  constexpr TestType kLeast = std::numeric_limits<TestType>::min();
-  constexpr TestType kGreatest = std::numeric_limits<TestType>::max();
-  check_round_trip<TestType>({kGreatest, kLeast, 0, 1, kLeast}, kValueBits<TestType>);
-}
-
-TEMPLATE_TEST_CASE("spans next to a power of two take the bits that they need", "", std::int32_t,
-                   std::uint64_t) {
+TEMPLATE_TEST_CASE("packed values of every width read back, the widest of them raw", "",
+                   std::int32_t, std::uint64_t) {
   using Unsigned = std::make_unsigned_t<TestType>;
-  for (unsigned bits = 2; bits < kValueBits<TestType>; ++bits) {
+  constexpr unsigned kBits = kValueBits<TestType>;
+  for (unsigned bits = 0; bits <= kBits; ++bits) {
+    check_span<TestType>(span_of_bits<TestType>(bits, bits), bits);
+    if (bits < 2 || bits == kBits) continue;
     const auto power = static_cast<Unsigned>(Unsigned{1} << bits);
     check_span<TestType>(power - 1, bits);
     check_span<TestType>(power, bits + 1);
   }
-}
-
-TEMPLATE_TEST_CASE("a single value, and equal ones, take one byte", "", std::int32_t,
-                   std::uint64_t) {
-  for (const TestType value : {std::numeric_limits<TestType>::min(), TestType{0}, TestType{77},
-                               std::numeric_limits<TestType>::max()}) {
+  using Limits = std::numeric_limits<TestType>;
+  for (const unsigned below : {0u, 1u, 2u, 3u}) {
+    check_span<TestType>(std::numeric_limits<Unsigned>::max() - below, kBits);
+  }
+  check_round_trip<TestType>({Limits::max(), Limits::min(), 0, 1, Limits::min()}, kBits);
+  for (const TestType value : {Limits::min(), TestType{0}, TestType{77}, Limits::max()}) {
     check_round_trip<TestType>({value}, 0);
     check_round_trip(std::vector<TestType>(1000, value), 0);
     REQUIRE(packed(std::vector<TestType>(1000, value)).size() == kPackedHeaderBytes + 1);
-  }
-}
-
-TEST_CASE("a full cell of 65536 values reads back") {
-  for (const unsigned bits : {1u, 13u, 24u, 31u}) {
-    check_round_trip(values_of_span<std::int32_t>(65536, span_of_bits<std::int32_t>(bits, 3), bits),
-                     bits);
-  }
-  for (const unsigned bits : {20u, 33u, 57u, 58u, 63u}) {
-    check_round_trip(
-        values_of_span<std::uint64_t>(65536, span_of_bits<std::uint64_t>(bits, 3), bits), bits);
   }
 }
 
@@ -152,10 +119,7 @@ TEST_CASE("chunks are appended, the header is HDF5's") {
   append_packed_chunk<std::int32_t>(values, bytes);
   const unsigned char expected[] = {42,   2,    0, 0, 0, 8, 0xfe, 0xff, 0xff, 0xff, 0xff, 0xff,
                                     0xff, 0xff, 0, 0, 0, 0, 0,    0,    0,    0,    0x30};
-  REQUIRE(bytes.size() == sizeof expected);
-  for (std::size_t i = 0; i < bytes.size(); ++i) {
-    CHECK(std::to_integer<unsigned>(bytes[i]) == expected[i]);
-  }
+  CHECK(std::ranges::equal(bytes, std::as_bytes(std::span(expected))));
 }
 
 TEST_CASE("chunks of a wrong size are refused") {

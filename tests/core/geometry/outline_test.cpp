@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <map>
-#include <random>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
+#include "support/scenes.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -31,15 +31,13 @@ double volume_of(const Model& solid) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   long double volume = 0;
   for (const auto& t : solid.triangles) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t a = t[static_cast<std::size_t>(k)];
-      const std::uint32_t b = t[static_cast<std::size_t>((k + 1) % 3)];
-      REQUIRE(edges[{a, b}]++ == 0);
+    for (std::size_t k = 0; k < 3; ++k) {
+      REQUIRE(edges[{t[k], t[(k + 1) % 3]}]++ == 0);
     }
     const Vec3 &p = solid.vertices[t[0]], &q = solid.vertices[t[1]], &r = solid.vertices[t[2]];
-    volume += static_cast<long double>(p.x) * (q.y * r.z - q.z * r.y) +
-              static_cast<long double>(p.y) * (q.z * r.x - q.x * r.z) +
-              static_cast<long double>(p.z) * (q.x * r.y - q.y * r.x);
+    const long double x = p.x, y = p.y, z = p.z;
+    volume +=
+        x * (q.y * r.z - q.z * r.y) + y * (q.z * r.x - q.x * r.z) + z * (q.x * r.y - q.y * r.x);
   }
   for (const auto& [edge, count] : edges) REQUIRE(edges.contains({edge.second, edge.first}));
   return static_cast<double>(volume / 6);
@@ -62,24 +60,13 @@ void check_solid(const Outline& outline) {
   }
 }
 
-struct Dice {
-  explicit Dice(unsigned seed) : engine(seed) {}
-  double real(double least, double most) {
-    return std::uniform_real_distribution<double>(least, most)(engine);
-  }
-  std::size_t below(std::size_t most) {
-    return std::uniform_int_distribution<std::size_t>(0, most - 1)(engine);
-  }
-  std::mt19937 engine;
-};
-
 /// A polygon through random places, whose crossing edges are exchanged until none cross. With a
 /// coarse grid many corners lie on one line.
-Outline untangled(Dice& dice, std::size_t corners, double grid) {
+Outline untangled(Random& random, std::size_t corners, double grid) {
   Outline out;
   while (out.size() < corners) {
-    const OutlinePoint p{std::floor(dice.real(-20, 20)) * grid,
-                         std::floor(dice.real(0, 40)) * grid};
+    const OutlinePoint p{std::floor(uniform(random, -20, 20)) * grid,
+                         std::floor(uniform(random, 0, 40)) * grid};
     if (std::ranges::find(out, p) == out.end()) out.push_back(p);
   }
   for (int turn = 0; turn < 2000; ++turn) {
@@ -95,13 +82,13 @@ Outline untangled(Dice& dice, std::size_t corners, double grid) {
 
 /// Puts corners on edges: exactly on them where these are level or upright, otherwise one rounding
 /// beside them.
-Outline with_flat_corners(Dice& dice, const Outline& from) {
+Outline with_flat_corners(Random& random, const Outline& from) {
   Outline out;
   for (std::size_t i = 0; i < from.size(); ++i) {
     const OutlinePoint &a = from[i], &b = from[(i + 1) % from.size()];
     out.push_back(a);
-    if (dice.below(3) != 0) continue;
-    const double part = dice.real(0.2, 0.8);
+    if (below(random, 3) != 0) continue;
+    const double part = uniform(random, 0.2, 0.8);
     out.push_back({a.y + part * (b.y - a.y), a.z + part * (b.z - a.z)});
   }
   return out;
@@ -114,10 +101,10 @@ TEST_CASE("solids of random outlines are closed, point outwards and have their v
   for (unsigned seed = 0; checked < 1000; ++seed) {
     INFO("seed " << seed);
     REQUIRE(seed < 4000);
-    Dice dice(seed);
-    Outline outline = untangled(dice, 3 + dice.below(20), seed % 2 == 0 ? 0.1 : 1.0 / 3);
+    Random random(seed);
+    Outline outline = untangled(random, 3 + below(random, 20), seed % 2 == 0 ? 0.1 : 1.0 / 3);
     if (outline.empty()) continue;
-    outline = with_flat_corners(dice, outline);
+    outline = with_flat_corners(random, outline);
     if (touching_edges(outline)) continue;  // a corner beside an edge can cross a neighbour
     if (seed % 3 == 0) std::ranges::reverse(outline);
     check_solid(outline);
@@ -131,13 +118,9 @@ TEST_CASE("a corner in the middle of an edge, and a spiral with one ear at each 
   check_solid({{0, 0}, {1, 0}, {2, 0}, {1, 2}});
   check_solid({{0, 0}, {2, 0}, {1, 2}, {0.5, 1}});
   Outline spiral;
-  for (int i = 0; i <= 200; ++i) {
-    const double turn = 0.1 * i;
-    spiral.push_back({(10 + turn) * std::cos(turn), (10 + turn) * std::sin(turn)});
-  }
-  for (int i = 200; i >= 0; --i) {
-    const double turn = 0.1 * i;
-    spiral.push_back({(9 + turn) * std::cos(turn), (9 + turn) * std::sin(turn)});
+  for (int i = 0; i <= 401; ++i) {  // out, and back beside itself
+    const double turn = 0.1 * std::min(i, 401 - i), radius = (i <= 200 ? 10 : 9) + turn;
+    spiral.push_back({radius * std::cos(turn), radius * std::sin(turn)});
   }
   check_solid(spiral);
 }
@@ -155,18 +138,23 @@ TEST_CASE("the side of a line is exact where rounding would decide it") {
 }
 
 TEST_CASE("outlines that are no simple polygon are refused") {
-  const auto refused = [](const Outline& outline, const char* words) {
-    check_refused([&] { return outline_model(outline, 0, 1); }, words);
+  struct Row {
+    Outline outline;
+    const char* words;
   };
-  refused({{0, 0}, {1, 0}}, "2 corners; expected 3 to 10,000");
-  refused({{0, 0}, {1, 1}, {1, 0}, {0, 1}}, "cross or touch");
-  refused({{0, 0}, {1, 0}, {2, 0}}, "cross or touch");                          // no area
-  refused({{0, 0}, {2, 0}, {1, 0}, {1, 1}}, "cross or touch");                  // folds back
-  refused({{0, 0}, {2, 0}, {2, 2}, {1, 0}}, "cross or touch");                  // touches an edge
-  refused({{0, 0}, {1, 0}, {1, 0}, {0, 1}}, "cross or touch");                  // a corner twice
-  refused({{0, 0}, {3, 0}, {3, 3}, {1, 1}, {2, 1}, {1, 1}}, "cross or touch");  // a needle
-  refused({{0, 0}, {1, 0}, {NAN, 1}}, "expected numbers from -1e6 to 1e6");
-  refused({{0, 0}, {1, 0}, {0, 2e6}}, "expected numbers from -1e6 to 1e6");
+  const char* const touch = "cross or touch";
+  const char* const no_numbers = "expected numbers from -1e6 to 1e6";
+  for (const Row& row :
+       {Row{{{0, 0}, {1, 0}}, "2 corners; expected 3 to 10,000"},
+        Row{{{0, 0}, {1, 1}, {1, 0}, {0, 1}}, touch},
+        Row{{{0, 0}, {1, 0}, {2, 0}}, touch},                          // no area
+        Row{{{0, 0}, {2, 0}, {1, 0}, {1, 1}}, touch},                  // folds back
+        Row{{{0, 0}, {2, 0}, {2, 2}, {1, 0}}, touch},                  // touches an edge
+        Row{{{0, 0}, {1, 0}, {1, 0}, {0, 1}}, touch},                  // a corner twice
+        Row{{{0, 0}, {3, 0}, {3, 3}, {1, 1}, {2, 1}, {1, 1}}, touch},  // a needle
+        Row{{{0, 0}, {1, 0}, {NAN, 1}}, no_numbers}, Row{{{0, 0}, {1, 0}, {0, 2e6}}, no_numbers}}) {
+    check_refused([&] { return outline_model(row.outline, 0, 1); }, row.words);
+  }
   const Outline sound{{0, 0}, {1, 0}, {0, 1}};
   check_refused([&] { return outline_model(sound, 1, 1); }, "expected its rear");
   check_refused([&] { return outline_model(sound, 0, INFINITY); }, "expected its rear");

@@ -1,13 +1,10 @@
 // `--precision float` against brute force in floats alone, which gives the same wrong answers
 // everywhere.
-#include <cmath>
-
 #include "core/grid/float_predicate.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/engines/brute_force.hpp"
+#include "support/engines/engines.hpp"
 #include "support/engines/grid_runs.hpp"
-#include "support/memory_cloud.hpp"
 #include "support/scenes.hpp"
 
 using namespace clearway;
@@ -22,30 +19,31 @@ struct Counts {
 
 Counts check_float(const Vec3& origin, double radius) {
   Random random(31);
-  const Quantisation quantisation{{1e-3, 1e-3, 1e-3}, {origin.x, origin.y, origin.z}};
-  const Box room{{origin.x, origin.y, origin.z}, {origin.x + 5, origin.y + 5, origin.z + 2}};
-  const auto points = quantise(random_points(random, room, 3000), quantisation);
-  const auto positions = positions_of(points, quantisation);
-  const auto model = random_points(random, {{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}}, 200);
-  const auto poses = smooth_path(random, room, 20);
-  const Query query{model, poses, {.radius = radius}};
-  const auto exact = brute_force_first_poses(positions, query);
-
-  const MemoryCloud cloud(points, quantisation, {512, 0});
-  const HitSet hits = run_grid(cloud, query, {.options = {.precision = GridPrecision::kFloat}});
+  const Box room{{0, 0, 0}, {5, 5, 2}};
+  EngineScene scene{{}, {{1e-3, 1e-3, 1e-3}, {0, 0, 0}}, {}};
+  scene.points = quantise(random_points(random, room, 3000), scene.quantisation);
+  scene.query = {random_points(random, {{-0.5, -0.4, -0.3}, {0.5, 0.4, 0.3}}, 200),
+                 smooth_path(random, room, 20),
+                 {.radius = radius}};
+  scene.move_far_away(origin);
+  const Expected exact(scene);
+  const std::vector<Vec3> positions = positions_of(scene.points, scene.quantisation);
+  const MemoryCloud cloud(scene.points, scene.quantisation, {512, 0});
+  const HitSet hits =
+      run_grid(cloud, scene.query, {.options = {.precision = GridPrecision::kFloat}}).hits;
   Counts counts;
   std::uint64_t wrong = 0;
-  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-    if (!cloud.is_used(slot)) continue;
-    bool expected = false;
-    for (const Pose& pose : poses) {
-      for (const Vec3& m : model) {
-        expected = expected || collides_in_float(positions[cloud.source(slot)], pose, m, radius);
-      }
-    }
-    wrong += hits.contains(slot) != expected;
+  for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
+    if (!cloud.is_used(entry)) continue;
+    const std::uint64_t source = cloud.source(entry);
+    const bool expected = std::ranges::any_of(scene.query.poses, [&](const Pose& pose) {
+      return std::ranges::any_of(scene.query.model.vertices, [&](const Vec3& m) {
+        return collides_in_float(positions[source], pose, m, radius);
+      });
+    });
+    wrong += hits.contains(entry) != expected;
     counts.hits += expected;
-    counts.differing += expected != (exact[cloud.source(slot)] != kNoPose);
+    counts.differing += expected != (exact.first_poses(false)[source] != kNoPose);
   }
   check_equal(wrong, 0);
   return counts;

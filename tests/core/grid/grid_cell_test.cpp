@@ -7,9 +7,10 @@
 #include "core/grid/grid_search.hpp"
 #include "support/catch.hpp"
 #include "support/memory_cloud.hpp"
-#include "support/scenes.hpp"
+#include "support/random_triangles.hpp"
 
 using namespace clearway;
+using namespace clearway::test;
 
 namespace {
 
@@ -36,12 +37,6 @@ struct Tally {
   std::uint64_t hits = 0, misses = 0, accepted = 0, dismissed = 0;
 };
 
-bool in_step_range(const GridCell& grid, float p, float x) {
-  const int at = grid_step(p, grid.per_bucket);
-  return grid_step(x - grid.reach, grid.per_bucket) <= at &&
-         at <= grid_step(x + grid.reach, grid.per_bucket);
-}
-
 /// Checks that what every filter says of the pair agrees with the predicate.
 void check_pair(const OneCell& cell, const Vec3& e, const Vec3& m, Tally& tally) {
   const GridCell& grid = cell.grid;
@@ -57,14 +52,14 @@ void check_pair(const OneCell& cell, const Vec3& e, const Vec3& m, Tally& tally)
   if (inside) REQUIRE(hit);
   if (!hit) return;
   REQUIRE(!outside);
+  const float of_p[] = {p.x, p.y, p.z}, of_x[] = {x.x, x.y, x.z};
   for (int k = 0; k < 3; ++k) {
-    const float at = k == 0 ? x.x : k == 1 ? x.y : x.z;
-    REQUIRE(at >= -grid.reach);
-    REQUIRE(at <= grid.extent[k] + grid.reach);
+    REQUIRE(of_x[k] >= -grid.reach);
+    REQUIRE(of_x[k] <= grid.extent[k] + grid.reach);
+    const int at = grid_step(of_p[k], grid.per_bucket);
+    REQUIRE(grid_step(of_x[k] - grid.reach, grid.per_bucket) <= at);
+    REQUIRE(grid_step(of_x[k] + grid.reach, grid.per_bucket) >= at);
   }
-  REQUIRE(in_step_range(grid, p.x, x.x));
-  REQUIRE(in_step_range(grid, p.y, x.y));
-  REQUIRE(in_step_range(grid, p.z, x.z));
   std::vector<std::uint64_t> words(4096);
   mark_around(words.data(), 4096, grid.per_bit, grid.reach, p);
   REQUIRE(is_marked(words.data(), 4096, grid.per_bit, x.x, x.y, x.z));
@@ -98,9 +93,7 @@ TEST_CASE("filters agree with the predicate for pairs around the radius") {
       Vec3 direction = random_direction(random);
       if (i % 5 == 0) direction = {i % 2 == 0 ? 1.0 : -1.0, 0, 0};
       const double off = std::pow(10, uniform(random, -12, 0)) * (i % 2 == 0 ? 1 : -1);
-      Vec3 m{};
-      for (int k = 0; k < 3; ++k) m[k] = e[k] + direction[k] * radius * (1 + off);
-      check_pair(cell, e, m, tally);
+      check_pair(cell, e, plus(e, radius * (1 + off), direction), tally);
     }
   }
   CHECK(tally.hits > 5000);
@@ -121,14 +114,12 @@ TEST_CASE("pairs one float rounding around the bounds of a cell") {
       const double radius = extent * of_extent;
       const OneCell cell(corners(quanta), quantisation, radius);
       for (int i = 0; i < 2000; ++i) {
-        Vec3 e{}, m{};
-        const Vec3 direction = random_direction(random);
-        const double off = uniform(random, -1e-6, 1e-6) * (extent + radius) / radius;
+        Vec3 e{};
         for (int k = 0; k < 3; ++k) {
           e[k] = extent * (1 - std::floor(uniform(random, 0, 1000)) * 0x1p-30);
-          m[k] = e[k] + direction[k] * radius * (1 + off);
         }
-        check_pair(cell, e, m, tally);
+        const double off = uniform(random, -1e-6, 1e-6) * (extent + radius) / radius;
+        check_pair(cell, e, plus(e, radius * (1 + off), random_direction(random)), tally);
       }
     }
   }
@@ -151,10 +142,9 @@ TEST_CASE("a group's centre within the group radius of a point finds its bit") {
     const Vec3 e = position(quantisation, q[0], q[1], q[2]);
     mark_around(words.data(), 64, grid.per_group_bit, grid.group_reach, rebased(grid, e, 0));
     for (int i = 0; i < 100; ++i) {
-      Vec3 c = random_direction(random);
-      if (i % 4 == 0) c = {i % 8 == 0 ? 1.0 : -1.0, 0, 0};
-      for (int k = 0; k < 3; ++k) c[k] = e[k] + c[k] * grid.group_radius * (1 - 1e-9);
-      const GridPoint x = rebased(grid, c, 0);
+      const Vec3 along{i % 8 == 0 ? 1.0 : -1.0, 0, 0};
+      const Vec3 to = i % 4 == 0 ? along : random_direction(random);
+      const GridPoint x = rebased(grid, plus(e, grid.group_radius * (1 - 1e-9), to), 0);
       REQUIRE(is_marked(words.data(), 64, grid.per_group_bit, x.x, x.y, x.z));
     }
   }

@@ -16,43 +16,33 @@ namespace {
 
 using message_table::kMessageKinds;
 
-const char* name_of(Severities severities) {
-  switch (severities) {
-    case Severities::kNote:
-      return "note";
-    case Severities::kWarning:
-      return "warning";
-    case Severities::kEither:
-      break;
-  }
-  return "note or warning";
-}
-
 std::string in_code(std::string_view text) { return "`" + std::string(text) + "`"; }
 
 std::string table_of(Subject subject) {
   std::string text = "| code | kind | meaning |\n|---|---|---|\n";
   for (const MessageKind& kind : kMessageKinds) {
     if (kind.subject != subject) continue;
-    text += "| " + in_code(kind.code) + " | " + name_of(kind.severities) + " | " +
-            std::string(kind.sentence) + " |\n";
-  }
-  return text;
-}
-
-std::string codes_with(Doubt doubt) {
-  std::string text;
-  for (const MessageKind& kind : kMessageKinds) {
-    if (kind.effect.doubt == doubt) text += (text.empty() ? "" : ", ") + in_code(kind.code);
+    const char* const severities = kind.severities == Severities::kNote      ? "note"
+                                   : kind.severities == Severities::kWarning ? "warning"
+                                                                             : "note or warning";
+    text += "| " + in_code(kind.code) + " | " + severities + " | " + std::string(kind.sentence) +
+            " |\n";
   }
   return text;
 }
 
 std::string table_of_doubts() {
-  return "| what is in doubt | warnings |\n|---|---|\n| the whole query | " +
-         codes_with(Doubt::kQuestion) +
-         " |\n| the stretches of the path that the warning names | " + codes_with(Doubt::kStretch) +
-         " |\n";
+  std::string text = "| what is in doubt | warnings |\n|---|---|\n";
+  for (const auto& [doubt, words] :
+       {std::pair(Doubt::kQuestion, "the whole query"),
+        std::pair(Doubt::kStretch, "the stretches of the path that the warning names")}) {
+    std::string codes;
+    for (const MessageKind& kind : kMessageKinds) {
+      if (kind.effect.doubt == doubt) codes += (codes.empty() ? "" : ", ") + in_code(kind.code);
+    }
+    text += std::string("| ") + words + " | " + codes + " |\n";
+  }
+  return text;
 }
 
 /// The words of the command line as a sentence of a table, with the amount in capitals.
@@ -99,11 +89,12 @@ TEST_CASE("the codes of each subject ascend, so each is there once") {
 TEST_CASE("the guide's tables of warnings are those of the table of messages") {
   const std::string page = CLEARWAY_GUIDE "/warnings.md";
   check_generated(page, "table of doubts", table_of_doubts());
-  check_generated(page, "table of scans", table_of(Subject::kScans));
-  check_generated(page, "table of models", table_of(Subject::kModels));
-  check_generated(page, "table of trajectories", table_of(Subject::kTrajectories));
-  check_generated(page, "table of queries", table_of(Subject::kQueries));
-  check_generated(page, "table of findings", table_of(Subject::kFindings));
+  for (const auto& [name, subject] :
+       {std::pair("scans", Subject::kScans), std::pair("models", Subject::kModels),
+        std::pair("trajectories", Subject::kTrajectories), std::pair("queries", Subject::kQueries),
+        std::pair("findings", Subject::kFindings)}) {
+    check_generated(page, std::string("table of ") + name, table_of(subject));
+  }
 }
 
 TEST_CASE("the guide's table of remedies is the table of remedies") {

@@ -60,17 +60,12 @@ TEST_CASE("no cube that the model sweeps is outside the bricks along its path") 
     Query query;
     query.model = Model(random_points(random, {{-2, -1, 0}, {3, 1, 2}}, 40));
     query.between_poses = scene % 2 == 1;
-    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto unit = [&] { return uniform(random, -1, 1); };
     for (int i = 0; i < 6; ++i) {
-      Pose pose{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {500000 + 4 * i + unit(random), unit(random), 12}};
-      const double turn = 3 * unit(random);
-      pose.rotation[0] = pose.rotation[4] = std::cos(turn);
-      pose.rotation[1] = -(pose.rotation[3] = std::sin(turn));
-      query.poses.push_back(pose);
+      query.poses.push_back(rotation({0, 0, 1}, 3 * unit(), {500000 + 4 * i + unit(), unit(), 12}));
     }
-    const double radius = 0.3;
     const std::vector<Brick> bricks =
-        bricks_along(query, radius, kOddCubes, kMillimetres, std::uint64_t{1} << 30);
+        bricks_along(query, 0.3, kOddCubes, kMillimetres, std::uint64_t{1} << 30);
     REQUIRE(std::is_sorted(bricks.begin(), bricks.end()));
     const std::set<Brick> known(bricks.begin(), bricks.end());
     for (std::size_t i = 0; i < query.poses.size(); ++i) {
@@ -80,7 +75,7 @@ TEST_CASE("no cube that the model sweeps is outside the bricks along its path") 
           const Vec3 before = transform(query.poses[i - 1], p);
           for (int k = 0; k < 3; ++k) at[k] = (at[k] + before[k]) / 2;
         }
-        for (int k = 0; k < 3; ++k) at[k] += 0.17 * unit(random);
+        for (int k = 0; k < 3; ++k) at[k] += 0.17 * unit();
         Cube cube{};
         for (int k = 0; k < 3; ++k) {
           const double q = std::floor((at[k] - kMillimetres.offset[k]) / kMillimetres.scale[k]);
@@ -95,7 +90,7 @@ TEST_CASE("no cube that the model sweeps is outside the bricks along its path") 
 TEST_CASE("cubes beyond 32-bit integers, and more bricks than memory holds, are refused") {
   Query query;
   query.model = Model({{0, 0, 0}, {1, 1, 1}});
-  query.poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {1e9, 0, 0}});
+  query.poses.push_back(translation({1e9, 0, 0}));
   CHECK_THROWS_AS(bricks_along(query, 0.1, kOddCubes, kMillimetres, 1 << 20), InputError);
   CHECK_THROWS_AS(BrickCloud({{{1 << 24, 0, 0}}}, kOddCubes, kMillimetres), InputError);
   query.model = Model({{0, 0, 0}, {100, 100, 100}});

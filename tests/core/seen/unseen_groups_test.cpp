@@ -5,8 +5,9 @@
 #include <cstdlib>
 #include <limits>
 #include <map>
-#include <queue>
+#include <numeric>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "core/seen/cross_sections.hpp"
@@ -16,79 +17,52 @@
 using namespace clearway;
 using namespace clearway::test;
 
-TEST_CASE("cubes that touch by a corner are one group, and groups are ordered by pose, then cube") {
-  const std::vector<Cube> cubes{{{0, 0, 0}}, {{0, 0, 2}}, {{1, 1, 1}}, {{5, 0, 0}}, {{9, 0, 0}}};
-  CHECK(group_cubes(cubes, std::vector<std::uint32_t>{7, 8, 9, 3, 7}) ==
-        std::vector<std::uint32_t>{2, 2, 2, 1, 3});
-  CHECK(group_cubes({}, {}).empty());
-}
-
 TEST_CASE("groups of random cubes are those of all pairs") {
   std::mt19937 random(3);
   for (unsigned scene = 0; scene < 200; ++scene) {
     std::vector<Cube> cubes;
-    for (std::int32_t x = -3; x < 4; ++x) {
-      for (std::int32_t y = -3; y < 4; ++y) {
-        for (std::int32_t z = -3; z < 4; ++z) {
-          if (random() % 100 < 6 + scene % 10) cubes.push_back({{x, y, z}});
-        }
-      }
+    for (std::int32_t i = 0; i < 7 * 7 * 7; ++i) {
+      if (random() % 100 < 6 + scene % 10)
+        cubes.push_back({{i / 49 - 3, i / 7 % 7 - 3, i % 7 - 3}});
     }
-    std::vector<std::uint32_t> poses;
-    for (std::size_t i = 0; i < cubes.size(); ++i)
-      poses.push_back(static_cast<std::uint32_t>(random() % 5));
-    const std::vector<std::uint32_t> groups = group_cubes(cubes, poses);
+    std::vector<std::uint32_t> poses(cubes.size());
+    for (auto& pose : poses) pose = static_cast<std::uint32_t>(random() % 5);
     const auto touch = [&](std::size_t a, std::size_t b) {
       for (int k = 0; k < 3; ++k) {
         if (std::abs(cubes[a].i[k] - cubes[b].i[k]) > 1) return false;
       }
       return true;
     };
-    std::vector<int> label(cubes.size(), -1);
-    int labels = 0;
-    for (std::size_t i = 0; i < cubes.size(); ++i) {
-      if (label[i] >= 0) continue;
-      std::queue<std::size_t> open({i});
-      label[i] = labels;
-      while (!open.empty()) {
-        const std::size_t at = open.front();
-        open.pop();
-        for (std::size_t j = 0; j < cubes.size(); ++j) {
-          if (label[j] >= 0 || !touch(at, j)) continue;
-          label[j] = labels;
-          open.push(j);
+    // Every cube takes the least pose and the least cube of those it touches, until all have.
+    std::vector<std::size_t> first(cubes.size());
+    std::iota(first.begin(), first.end(), std::size_t{0});
+    std::vector<std::uint32_t> least = poses;
+    for (bool changes = true; changes;) {
+      changes = false;
+      for (std::size_t a = 0; a < cubes.size(); ++a) {
+        for (std::size_t b = 0; b < cubes.size(); ++b) {
+          if (!touch(a, b) || (first[a] <= first[b] && least[a] <= least[b])) continue;
+          first[a] = std::min(first[a], first[b]);
+          least[a] = std::min(least[a], least[b]);
+          changes = true;
         }
       }
-      ++labels;
     }
-    // The order: pairs of the least pose and the least cube, ascending.
-    std::map<int, std::pair<std::uint32_t, std::size_t>> key;
+    std::set<std::pair<std::uint32_t, std::size_t>> keys;
+    for (std::size_t i = 0; i < cubes.size(); ++i) keys.emplace(least[i], first[i]);
+    std::vector<std::uint32_t> expected;
     for (std::size_t i = 0; i < cubes.size(); ++i) {
-      auto& [pose, cube] = key.try_emplace(label[i], 99U, i).first->second;
-      pose = std::min(pose, poses[i]);
+      const auto before = std::distance(keys.begin(), keys.find({least[i], first[i]}));
+      expected.push_back(static_cast<std::uint32_t>(1 + before));
     }
-    for (std::size_t i = 0; i < cubes.size(); ++i) {
-      std::uint32_t before = 1;
-      for (const auto& [other, k] : key) before += k < key[label[i]] ? 1 : 0;
-      REQUIRE(groups[i] == before);
-    }
+    REQUIRE(group_cubes(cubes, poses) == expected);
   }
+  CHECK(group_cubes({}, {}).empty());
 }
 
 namespace {
 
 using Cells = std::map<std::array<std::int32_t, 3>, std::uint64_t>;
-
-Cells cells_of(const CrossSections& sections) {
-  const SweptCells found = sections.cells();
-  Cells out;
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    if (i > 0) CHECK(found.cell[i - 1] < found.cell[i]);
-    out[found.cell[i]] = found.parts[i];
-  }
-  check_equal(out.size(), found.size());
-  return out;
-}
 
 /// Each of the cube's 64 x 64 parts on its own.
 void share(const Vec3& middle, double side, Cells& cells) {
@@ -114,18 +88,22 @@ TEST_CASE("cubes are shared among the cells that their squares cover") {
     std::uniform_real_distribution<double> place(-spread, spread);
     CrossSections all(side), some(side);
     Cells expected;
-    constexpr int kCubes = 300;
-    for (int i = 0; i < kCubes; ++i) {
+    for (int i = 0; i < 300; ++i) {
       Vec3 middle{place(random), place(random), place(random)};
       if (i % 3 == 0) middle = {0.2 * (i % 7) + 0.1, -0.2 * (i % 5), 0};  // flush with the cells
       (i % 2 == 0 ? all : some).add(middle);
       share(middle, side, expected);
     }
     all.add(some);
-    CHECK(cells_of(all) == expected);
-    std::uint64_t parts = 0;
-    for (const auto& [cell, more] : expected) parts += more;
-    CHECK(parts == 3 * kCubes * CrossSections::kParts);
+    const SweptCells found = all.cells();
+    std::vector<std::array<std::int32_t, 3>> cells;  // in their order
+    std::vector<std::uint64_t> parts;
+    for (const auto& [cell, count] : expected) {
+      cells.push_back(cell);
+      parts.push_back(count);
+    }
+    CHECK(std::ranges::equal(found.cell, cells));
+    CHECK(std::ranges::equal(found.parts, parts));
   }
 }
 

@@ -1,10 +1,6 @@
 #include "core/sweep/point_curve.hpp"
 
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <random>
-#include <vector>
 
 #include "core/geometry/predicate.hpp"
 #include "core/sweep/triangle_curve.hpp"
@@ -19,16 +15,17 @@ using namespace clearway::test;
 namespace {
 
 const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
-constexpr double kReach = 0.5, kSpacing = 0.1;
+constexpr double kReach = 0.5;
 
 struct Place {
   long double x, y, z;
+  Vec3 rounded() const {
+    return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
+  }
+  long double distance_to(const Vec3& m) const {
+    return std::sqrt((x - m.x) * (x - m.x) + (y - m.y) * (y - m.y) + (z - m.z) * (z - m.z));
+  }
 };
-
-Pose turned(double angle, const Vec3& p) {
-  return {{std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle), 0, 0, 0, 1},
-          {p.x, p.y, p.z}};
-}
 
 /// The place on the parabola through three poses at t, by Lagrange's formula.
 Place place_at(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e, long double t) {
@@ -48,202 +45,130 @@ Place place_at(const MotionTreeRef& motion, const MotionNode& node, const Vec3& 
           of[0] * a.z + of[1] * b.z + of[2] * c.z};
 }
 
-long double squared_distance_of(const Place& p, const Vec3& m) {
-  return (p.x - m.x) * (p.x - m.x) + (p.y - m.y) * (p.y - m.y) + (p.z - m.z) * (p.z - m.z);
-}
-
-Vec3 random_place(std::mt19937_64& random, double beyond) {
-  std::uniform_real_distribution<double> unit(0, 1);
-  Vec3 place{};
-  for (int k = 0; k < 3; ++k) {
-    const double lo = kModel.lo[k] - beyond, hi = kModel.hi[k] + beyond;
-    place[k] = lo + (hi - lo) * unit(random);
-  }
-  return place;
+/// A point that moves by a little, as Gaussian noise does, more often near than far.
+Vec3 noise(Random& random, double size) {
+  return plus({}, size * std::abs(std::normal_distribution<double>()(random)),
+              random_direction(random));
 }
 
 double root(float squared) { return std::sqrt(static_cast<double>(squared)); }
 
-std::vector<Pose> path(std::uint32_t count, const std::function<Pose(double)>& at) {
-  std::vector<Pose> poses;
-  for (std::uint32_t i = 0; i < count; ++i) poses.push_back(at(i));
-  return poses;
-}
-
-std::vector<std::vector<Pose>> paths() {
-  auto jitter = std::make_shared<std::mt19937_64>(5);
-  const auto noise = [jitter](double size) {
-    return std::normal_distribution<double>(0, size)(*jitter);
-  };
-  return {
-      path(200,
-           [](double i) {
-             return turned(0, {0.02 * i, 0, 0});
-           }),
-      path(500,
-           [](double i) {
-             return turned(0.001 * i, {0.02 * i, 0.0001 * i * i, 0});
-           }),
-      path(257,
-           [](double i) {
-             return turned(0, {0.0002 * i * i, 0, 0});
-           }),
-      path(300,
-           [](double i) {
-             return turned(0.3, {std::sin(0.02 * i), 0, 0});
-           }),
-      path(128,
-           [](double i) {
-             return turned(0.02 * i, {0, 0, 0});
-           }),
-      path(200,
-           [&](double i) {
-             return turned(0, {0.02 * i + noise(0.001), noise(0.001), 0});
-           }),
-      path(200,
-           [&](double) {
-             return turned(0.1, {noise(0.001), noise(0.001), noise(0.001)});
-           }),
-      path(100,
-           [](double i) {
-             return turned(0, {i < 50 ? 0.01 * i : 5 + 0.01 * i, 0, 0});
-           }),
-      path(64,
-           [](double) {
-             return turned(1, {1, 2, 3});
-           }),
-  };
+/// Calls visit(motion, node index) for nodes of slow paths: all of them, or every second, and fewer
+/// of those farther down.
+template <typename Visit>
+void for_nodes(Random& random, bool all, const Visit& visit) {
+  for (int path = 0; path < 12; ++path) {
+    std::vector<Pose> poses = random_slow_path(random, 64 + 40 * static_cast<std::size_t>(path));
+    if (path == 0) poses.assign(64, poses[7]);
+    const MotionTree motion(poses, kModel);
+    for (std::uint32_t at = 0; at < motion.nodes().size(); at += all ? 1 : 1 + at / 20) {
+      visit(motion, poses, at);
+    }
+  }
 }
 
 }  // namespace
 
 TEST_CASE("poses pull places back to their node's parabola within its error") {
-  std::mt19937_64 random(1);
+  Random random(1);
   std::size_t smooth = 0;
-  for (const std::vector<Pose>& poses : paths()) {
-    const MotionTree motion(poses, kModel);
-    const MotionCurves curves(motion, kModel, kReach, kSpacing, 2);
-    const MotionTreeRef ref = motion.ref();
-    for (std::uint32_t at = 0; at < motion.nodes().size(); ++at) {
-      const MotionNode& node = motion.nodes()[at];
-      const MotionCurve& curve = curves.data()[at];
-      if (!curve.is_smooth()) continue;
-      smooth += node.count > 2 ? 1 : 0;
-      const double error = curve.is_one_place() ? 0 : static_cast<double>(curve.error);
-      for (int k = 0; k < 10; ++k) {
-        const auto i = std::uniform_int_distribution<std::uint32_t>(0, node.count - 1)(random);
-        const Vec3 y = random_place(random, kReach);
-        const Vec3 e = transform(poses[node.first + i], y);
-        const long double t = node.count > 1 ? i / (node.count - 1.0L) : 0;
-        const long double off = squared_distance_of(place_at(ref, node, e, t), y);
-        REQUIRE(std::sqrt(off) <= error + 1e-12L);
-      }
+  std::optional<MotionCurves> curves;
+  for_nodes(random, true, [&](const MotionTree& motion, const auto& poses, std::uint32_t at) {
+    if (at == 0) curves.emplace(motion, kModel, kReach, 0.1, 2);
+    const MotionNode& node = motion.nodes()[at];
+    const MotionCurve& curve = curves->data()[at];
+    if (!curve.is_smooth()) return;
+    smooth += node.count > 2 ? 1 : 0;
+    const double error = curve.is_one_place() ? 0 : static_cast<double>(curve.error);
+    for (int k = 0; k < 10; ++k) {
+      const auto i = static_cast<std::uint32_t>(below(random, node.count));
+      const Vec3 y = random_point(random, kModel.grown(kReach));
+      const Vec3 e = transform(poses[node.first + i], y);
+      const long double t = node.count > 1 ? i / (node.count - 1.0L) : 0;
+      REQUIRE(place_at(motion.ref(), node, e, t).distance_to(y) <= error + 1e-12L);
     }
-  }
+  });
   CHECK(smooth > 500);
 }
 
 TEST_CASE("a point's curve bounds distances and the places within them") {
-  std::mt19937_64 random(2);
+  Random random(2);
   std::size_t bounded = 0, only_middles = 0;
-  for (const std::vector<Pose>& poses : paths()) {
-    const MotionTree motion(poses, kModel);
+  for_nodes(random, false, [&](const MotionTree& motion, const auto& poses, std::uint32_t at) {
+    const MotionNode& node = motion.nodes()[at];
     const MotionTreeRef ref = motion.ref();
-    for (std::uint32_t at = 0; at < motion.nodes().size(); at += 1 + at / 20) {
-      const MotionNode& node = motion.nodes()[at];
-      const Vec3 e = transform(poses[node.mid], random_place(random, kReach));
-      const PointCurve curve(ref, node, e, kReach);
-      only_middles += curve.beside() > 0 ? 1 : 0;
-      PointPacket packet{};
-      packet.count = PointPacket::kMost;
-      for (std::uint32_t i = 0; i < packet.count; ++i) {
-        const Place near =
-            place_at(ref, node, e, std::uniform_real_distribution<double>(-0.1, 1.1)(random));
-        std::normal_distribution<double> beside(0, i < 4 ? 0.01 : 0.2);
-        packet.at[0][i] = static_cast<double>(near.x) + beside(random);
-        packet.at[1][i] = static_cast<double>(near.y) + beside(random);
-        packet.at[2][i] = static_cast<double>(near.z) + beside(random);
-      }
-      double squared[PointPacket::kMost];
-      curve.to_points(packet, squared);
-      for (std::uint32_t i = 0; i < packet.count; ++i) {
-        const Vec3 m = packet.point(i);
-        const double within = 0.3 * kReach;
-        const PointCurve::Places places = curve.places(m, within * within);
-        for (int k = 0; k <= 100; ++k) {
-          const long double t = k / 100.0L;
-          const Place place = place_at(ref, node, e, t);
-          const long double distance = std::sqrt(squared_distance_of(place, m));
-          if (distance > kReach) continue;
-          ++bounded;
-          const double lower = squared[i] > 0 ? std::sqrt(squared[i]) : 0;
-          REQUIRE(lower <= distance + curve.beside() + 1e-9L);
-          if (distance + curve.beside() > within) continue;
-          REQUIRE(places.low <= t + 1e-7L);
-          REQUIRE(places.high >= t - 1e-7L);
-        }
-        const Box box = curve.box();
-        const Place middle = place_at(ref, node, e, 0.5L);
-        const Vec3 there{static_cast<double>(middle.x), static_cast<double>(middle.y),
-                         static_cast<double>(middle.z)};
-        REQUIRE(std::sqrt(least_squared_distance(box, there)) <= curve.beside() + 1e-9);
+    const Vec3 e = transform(poses[node.mid], random_point(random, kModel.grown(kReach)));
+    const PointCurve curve(ref, node, e, kReach);
+    only_middles += curve.beside() > 0 ? 1 : 0;
+    PointPacket packet{};
+    packet.count = PointPacket::kMost;
+    for (std::uint32_t i = 0; i < packet.count; ++i) {
+      const Vec3 on = place_at(ref, node, e, uniform(random, -0.1, 1.1)).rounded();
+      const Vec3 m = plus(on, 1, noise(random, i < 4 ? 0.01 : 0.2));
+      for (int k = 0; k < 3; ++k) packet.at[k][i] = m[k];
+    }
+    double squared[PointPacket::kMost];
+    curve.to_points(packet, squared);
+    for (std::uint32_t i = 0; i < packet.count; ++i) {
+      const Vec3 m = packet.point(i);
+      const double within = 0.3 * kReach;
+      const PointCurve::Places places = curve.places(m, within * within);
+      for (int k = 0; k <= 100; ++k) {
+        const long double t = k / 100.0L, distance = place_at(ref, node, e, t).distance_to(m);
+        if (distance > kReach) continue;
+        ++bounded;
+        const double lower = squared[i] > 0 ? std::sqrt(squared[i]) : 0;
+        REQUIRE(lower <= distance + curve.beside() + 1e-9L);
+        if (distance + curve.beside() > within) continue;
+        REQUIRE(places.low <= t + 1e-7L);
+        REQUIRE(places.high >= t - 1e-7L);
       }
     }
-  }
+    const Vec3 middle = place_at(ref, node, e, 0.5L).rounded();
+    REQUIRE(std::sqrt(least_squared_distance(curve.box(), middle)) <= curve.beside() + 1e-9);
+  });
   CHECK(bounded > 10000);
   CHECK(only_middles > 10);
 }
 
 TEST_CASE("a triangle's bound from a curve is below its distance from every place of it") {
-  std::mt19937_64 random(3);
+  Random random(3);
   std::size_t above = 0, clear = 0, close = 0, off_pose = 0;
-  for (const std::vector<Pose>& poses : paths()) {
-    const MotionTree motion(poses, kModel);
+  for_nodes(random, false, [&](const MotionTree& motion, const auto& poses, std::uint32_t at) {
+    const MotionNode& node = motion.nodes()[at];
     const MotionTreeRef ref = motion.ref();
-    for (std::uint32_t at = 0; at < motion.nodes().size(); at += 1 + at / 20) {
-      const MotionNode& node = motion.nodes()[at];
-      const Vec3 e = transform(poses[node.mid], random_place(random, kReach));
-      const TriangleCurve curve(ref, node, e);
-      const auto place = [&](double t) {
-        const Place of = place_at(ref, node, e, t);
-        return Vec3{static_cast<double>(of.x), static_cast<double>(of.y),
-                    static_cast<double>(of.z)};
-      };
-      Triangle triangles[FloatPacket::kMost];
-      for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
-        std::normal_distribution<double> beside(0, i < 8 ? 0.05 : 0.5);
-        Vec3* const corners[3] = {&triangles[i].a, &triangles[i].b, &triangles[i].c};
-        for (Vec3* corner : corners) {
-          *corner = place(std::uniform_real_distribution<double>(-0.1, 1.1)(random));
-          for (int k = 0; k < 3; ++k) (*corner)[k] += beside(random);
-        }
-      }
-      const FloatPacket packet = FloatPacket::of(triangles, FloatPacket::kMost, 0);
-      float squared[FloatPacket::kMost], from_place[TriangleCurve::kMostPlaces];
-      curve.to_triangles(packet, squared);
-      for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
-        double least = kInfinity;
-        for (int k = 0; k <= 100; ++k) {
-          const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
-          above += root(squared[i]) > distance + 1e-9;
-          least = std::min(least, distance);
-        }
-        clear += least > 0.05;
-        close += least > 0.05 && root(squared[i]) > 0.8 * least;
-        curve.from_parts(packet, i, 13, 0.01F, from_place);
-        for (int k = 0; k <= 100; ++k) {
-          const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
-          above += root(from_place[k / 13]) > distance + 1e-9;
-        }
-        curve.from_places(packet, i, 85, 0.01F, from_place);
-        for (int k = 0; k < 16; ++k) {
-          const double exact = std::sqrt(squared_distance(place(0.85 + 0.01 * k), triangles[i]));
-          above += root(from_place[k]) > exact + 1e-9;
-          off_pose += !(root(from_place[k]) > exact - 2e-3);
-        }
+    const Vec3 e = transform(poses[node.mid], random_point(random, kModel.grown(kReach)));
+    const TriangleCurve curve(ref, node, e);
+    const auto place = [&](double t) { return place_at(ref, node, e, t).rounded(); };
+    // Where a path jumps by a kilometre, floats round by more than bounds are loose elsewhere.
+    const bool is_long = length_of(difference(place(0.5), place(0))) > 20;
+    Triangle triangles[FloatPacket::kMost];
+    for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
+      for (Vec3* corner : {&triangles[i].a, &triangles[i].b, &triangles[i].c}) {
+        *corner = plus(place(uniform(random, -0.1, 1.1)), 1, noise(random, i < 8 ? 0.05 : 0.5));
       }
     }
-  }
+    const FloatPacket packet = FloatPacket::of(triangles, FloatPacket::kMost, 0);
+    float squared[FloatPacket::kMost], of_parts[TriangleCurve::kMostPlaces],
+        of_places[TriangleCurve::kMostPlaces];
+    curve.to_triangles(packet, squared);
+    for (std::uint32_t i = 0; i < FloatPacket::kMost; ++i) {
+      curve.from_parts(packet, i, 13, 0.01F, of_parts);
+      curve.from_places(packet, i, 85, 0.01F, of_places);
+      double least = kInfinity;
+      for (int k = 0; k <= 100; ++k) {
+        const double distance = std::sqrt(squared_distance(place(k / 100.0), triangles[i]));
+        least = std::min(least, distance);
+        above += root(squared[i]) > distance + 1e-9;
+        above += root(of_parts[k / 13]) > distance + 1e-9;
+        if (k < 85) continue;
+        above += root(of_places[k - 85]) > distance + 1e-9;
+        off_pose += !(is_long || root(of_places[k - 85]) > distance - 2e-3);
+      }
+      clear += least > 0.05;
+      close += least > 0.05 && root(squared[i]) > 0.8 * least;
+    }
+  });
   check_equal(above, 0);
   check_equal(off_pose, 0);
   CHECK(clear > 1000);
@@ -255,18 +180,17 @@ TEST_CASE("bounds from curves hold for triangles and paths of every size") {
   std::size_t above = 0, positive = 0;
   for (int i = 0; i < 6'000; ++i) {
     const Triangle t = random_triangle(random);
-    const double size = longest_edge(t) + 1e-12;
     // The path's steps are far shorter or longer than the triangle, and a little bent.
-    const double far = size * std::pow(10.0, uniform(random, -3, 3));
+    const double far = (longest_edge(t) + 1e-12) * std::pow(10.0, uniform(random, -3, 3));
     const Vec3 way = plus({}, far, random_direction(random));
     const Vec3 bend = plus({}, 0.1 * far * uniform(random, 0, 1), random_direction(random));
     const Vec3 start = plus(random_place_at(random, t), -uniform(random, 0, 1), way);
-    std::vector<Pose> poses;
     constexpr int kPoses = 41;
+    constexpr float kStep = 1.0F / (kPoses - 1);
+    std::vector<Pose> poses;
     for (int k = 0; k < kPoses; ++k) {
       const double s = k / (kPoses - 1.0);
-      const Vec3 at = plus(plus({}, -s, way), -s * (1 - s), bend);
-      poses.push_back({{1, 0, 0, 0, 1, 0, 0, 0, 1}, {at.x, at.y, at.z}});
+      poses.push_back(translation(plus(plus({}, -s, way), -s * (1 - s), bend)));
     }
     const MotionTree motion(poses, Box{t.a, t.a});
     const MotionTreeRef ref = motion.ref();
@@ -275,18 +199,18 @@ TEST_CASE("bounds from curves hold for triangles and paths of every size") {
     float of_run[FloatPacket::kMost], of_parts[TriangleCurve::kMostPlaces],
         of_places[TriangleCurve::kMostPlaces];
     curve.to_triangles(packet, of_run);
-    curve.from_parts(packet, 0, 4, 1.0F / (kPoses - 1), of_parts);
+    curve.from_parts(packet, 0, 4, kStep, of_parts);
     for (int k = 0; k < kPoses; ++k) {
       if (k % 16 == 0) {
-        curve.from_places(packet, 0, static_cast<std::uint32_t>(k), 1.0F / (kPoses - 1), of_places);
+        curve.from_places(packet, 0, static_cast<std::uint32_t>(k), kStep, of_places);
       }
       const Vec3 x = ref.inverse_poses[k].apply(start);
       const double distance = std::sqrt(squared_distance(x, t));
       const double most = distance + 2 * triangle_error(distance, longest_edge(t)) +
                           64 * kUnitRoundoff * (length_of(x) + far);
-      above += root(of_run[0]) > most;
-      above += root(of_parts[k / 4]) > most;
-      above += root(of_places[k % 16]) > most;
+      for (const float bound : {of_run[0], of_parts[k / 4], of_places[k % 16]}) {
+        above += root(bound) > most;
+      }
       positive += of_run[0] > 0 && of_parts[k / 4] > 0 && of_places[k % 16] > 0;
     }
   }

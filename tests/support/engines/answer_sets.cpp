@@ -1,10 +1,12 @@
 #include "support/engines/answer_sets.hpp"
 
+#include "core/util/lane_bits.hpp"
+
 namespace clearway {
 
 SearchResult empty_result(const PackedCloud& cloud, const Query& query) {
   return {HitSet(cloud.entry_count(), query.first_pose),
-          ClearanceSet(query.clearance > 0 ? cloud.entry_count() : 0),
+          std::vector<Clearance>(query.clearance > 0 ? cloud.entry_count() : 0),
           query.profile > 0 ? ProfileSet(cloud, query.poses.size()) : ProfileSet()};
 }
 
@@ -14,7 +16,8 @@ void add_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, cons
     const std::uint64_t first = std::uint64_t{cells[i].cell} * cloud.cell_entries();
     const auto hits = part_of_cell(page.hits, i, cloud.blocks_per_cell());
     for (std::size_t block = 0; block < hits.size(); ++block) {
-      if (hits[block] != 0) all.hits.mark_word(first / kBlockPoints + block, hits[block]);
+      for_each_bit(hits[block],
+                   [&](std::uint32_t bit) { all.hits.mark(first + block * kBlockPoints + bit); });
     }
     const auto poses = part_of_cell(page.first_poses, i, cloud.cell_entries());
     for (std::size_t entry = 0; entry < poses.size(); ++entry) {
@@ -22,7 +25,7 @@ void add_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, cons
     }
     const auto clearances = part_of_cell(page.clearances, i, cloud.cell_entries());
     for (std::size_t entry = 0; entry < clearances.size(); ++entry) {
-      if (clearances[entry].found()) all.clearances.set(first + entry, clearances[entry]);
+      if (clearances[entry].found()) all.clearances[first + entry] = clearances[entry];
     }
   }
   offer_profile(cloud, cells, page.profile, all.profile);
@@ -39,7 +42,7 @@ SearchResult result_of(const AnswerRows& rows, const PackedCloud& cloud, Profile
     });
     const CellRows clearances = rows.read(cell, PointQuestion::kClearances);
     clearances.for_each([&](std::uint32_t point, std::size_t row) {
-      all.clearances.set(first + point, {clearances.distances[row], clearances.poses[row]});
+      all.clearances[first + point] = {clearances.distances[row], clearances.poses[row]};
     });
   }
   all.profile = std::move(profile);

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <bit>
+#include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -12,54 +11,32 @@
 
 namespace clearway {
 
-/// The colliding points of a PackedCloud by entry, and their first poses if asked for. Entries of
-/// different blocks may be marked at the same time.
+/// The colliding points of a PackedCloud by entry, and their first poses if asked for. Different
+/// entries may be marked at the same time.
 class HitSet {
  public:
   HitSet(std::uint64_t entries, bool first_pose)
-      : words_((entries + 63) / 64), poses_(first_pose ? entries : 0, kNoPose) {}
+      : hits_(entries), poses_(first_pose ? entries : 0, kNoPose) {}
 
-  void mark(std::uint64_t entry) { mark_word(entry / 64, std::uint64_t{1} << (entry % 64)); }
-  void mark(std::uint64_t entry, std::uint32_t pose) {
-    mark(entry);
-    poses_[entry] = pose;
-  }
-  /// Marks the entries 64 * word + i of all set bits i.
-  void mark_word(std::uint64_t word, std::uint64_t bits) { words_[word] |= bits; }
+  void mark(std::uint64_t entry) { hits_[entry] = 1; }
+  void mark(std::uint64_t entry, std::uint32_t pose) { poses_[entry] = pose; }
 
-  bool contains(std::uint64_t entry) const { return (words_[entry / 64] >> (entry % 64) & 1) != 0; }
-  std::uint64_t word(std::uint64_t index) const { return words_[index]; }
+  bool contains(std::uint64_t entry) const { return hits_[entry] != 0; }
   std::uint32_t first_pose(std::uint64_t entry) const { return poses_[entry]; }
   std::uint64_t count() const {
-    return std::accumulate(words_.begin(), words_.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, std::uint64_t word) {
-                             return sum + static_cast<std::uint64_t>(std::popcount(word));
-                           });
+    return static_cast<std::uint64_t>(std::ranges::count(hits_, std::uint8_t{1}));
   }
 
  private:
-  std::vector<std::uint64_t> words_;
+  std::vector<std::uint8_t> hits_;
   std::vector<std::uint32_t> poses_;
-};
-
-/// Clearances of a PackedCloud by entry; none if it is not below the distance asked for. Different
-/// entries may be set at the same time.
-class ClearanceSet {
- public:
-  ClearanceSet() = default;
-  explicit ClearanceSet(std::uint64_t entries) : clearances_(entries) {}
-
-  void set(std::uint64_t entry, const Clearance& clearance) { clearances_[entry] = clearance; }
-  Clearance at(std::uint64_t entry) const { return clearances_[entry]; }
-
- private:
-  std::vector<Clearance> clearances_;
 };
 
 /// The answer of an engine for every entry of a small cloud.
 struct SearchResult {
   HitSet hits;
-  ClearanceSet clearances;  ///< no entries unless asked for
+  /// None where a clearance is not below the distance asked for; empty unless asked for
+  std::vector<Clearance> clearances;
   ProfileSet profile = {};  ///< no poses unless asked for
 };
 

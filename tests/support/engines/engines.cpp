@@ -1,23 +1,26 @@
 #include "support/engines/engines.hpp"
 
-#include <algorithm>
-#include <utility>
+#include <cmath>
+#include <limits>
 
-#include "core/query/search_result.hpp"
+#include "core/geometry/predicate.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
-#include "support/engines/brute_force.hpp"
-#include "support/engines/check_profile.hpp"
 #include "support/engines/grid_runs.hpp"
 #include "support/engines/host_sweep.hpp"
+#include "support/engines/sweep_runs.hpp"
 
 namespace clearway {
 using namespace test;
 namespace {
 
-SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
-  return {run_kdtree(cloud, query, {.threads = threads}), ClearanceSet()};
+SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads, double) {
+  return run_kdtree(cloud, query, {.threads = threads});
+}
+
+SearchResult grid(const PackedCloud& cloud, const Query& query, int threads, double) {
+  return run_grid(cloud, query, {.threads = threads});
 }
 
 SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance) {
@@ -44,15 +47,28 @@ SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int 
                    });
 }
 
-SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
-  return {run_grid(cloud, query, {.threads = threads}), ClearanceSet()};
+/// Which points a query ignores, by the definition of its classes and boxes.
+bool is_ignored(const Query& query, const Vec3& p, std::uint8_t of_class) {
+  return std::ranges::count(query.ignore_classes, of_class) > 0 ||
+         std::ranges::any_of(query.ignore_boxes, [&p](const Box& box) {
+           return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
+                  p.z >= box.lo.z && p.z <= box.hi.z;
+         });
 }
 
-std::vector<Engine> under_test{
-    {"kdtree", kdtree, false},
-    {"sweep", run_exactly<sweep>, true, sweep},
-    {"sweep as on CUDA", run_exactly<sweep_as_on_cuda>, true, sweep_as_on_cuda},
-    {"grid", grid, false}};
+std::vector<std::uint8_t> classes_of(const EngineScene& scene) {
+  return scene.classes.empty() ? std::vector<std::uint8_t>(scene.points.size()) : scene.classes;
+}
+
+/// The values of searched points, each at the place of its source.
+template <typename Value>
+std::vector<Value> spread(const std::vector<Value>& searched,
+                          const std::vector<std::uint64_t>& sources, std::size_t points,
+                          const Value& none) {
+  std::vector<Value> all(points, none);
+  for (std::size_t i = 0; i < searched.size(); ++i) all[sources[i]] = searched[i];
+  return all;
+}
 
 /// The number of threads of the next run: three for every fifth run, otherwise one, because in
 /// scenes this small threads mostly wait for each other. The runs of a scene are no multiple of
@@ -62,204 +78,173 @@ int next_threads() {
   return ++runs % 5 == 0 ? 3 : 1;
 }
 
-/// The expected first poses by brute force, at poses and between them.
-struct Expected {
-  Expected(const std::vector<Vec3>& positions, Query query) {
-    query.between_poses = false;
-    at_poses = brute_force_first_poses(positions, query);
-    if (query.model.is_surface()) return;
-    query.between_poses = true;
-    between_poses = brute_force_first_poses(positions, query);
+/// The questions about a scene for one way to pack its points. variant: chooses the distances.
+std::vector<Query> questions(const EngineScene& scene, double reach, std::size_t variant) {
+  constexpr double kOfRadius[] = {0.3, 1, 1.7, 6, 40};
+  std::vector<Query> questions;
+  const auto add = [&](bool first_pose, bool between_poses, double clearance, double profile) {
+    Query& query = questions.emplace_back(scene.query);
+    query.first_pose = first_pose;
+    query.between_poses = between_poses;
+    query.clearance = clearance;
+    query.profile = profile;
+  };
+  for (const bool first_pose : {false, true}) {
+    add(first_pose, false, 0, 0);
+    if (!scene.query.model.is_surface()) add(first_pose, true, 0, 0);
   }
+  const double radius = scene.query.radius;
+  const bool first_pose = variant % 2 == 0;
+  add(first_pose, false, kOfRadius[(variant + 2) % 5] * radius, 0);
+  add(first_pose, false, variant % 3 == 0 ? 0.8 * radius : 0, kOfRadius[variant % 5] * radius);
+  if (reach > 0) add(!first_pose, false, reach, variant % 3 == 0 ? 0 : reach);
+  return questions;
+}
 
-  std::vector<std::uint32_t> at_poses, between_poses;
-};
-
-std::uint64_t check_results(const MemoryCloud& cloud, const std::vector<std::uint32_t>& expected,
-                            Query query) {
-  std::uint64_t colliding = 0;
-  for (const std::uint32_t pose : expected) colliding += pose != kNoPose;
+void check_answers(const MemoryCloud& cloud, const Expected& expected, const Query& query) {
+  const bool needs_all = query.between_poses || query.floor || query.first_pose ||
+                         query.clearance > 0 || query.profile > 0 || query.model.is_surface();
   for (const Engine& engine : engines()) {
-    const bool needs_all = query.between_poses || query.floor || query.model.is_surface();
     if (needs_all && !engine.finds_all) continue;
-    for (const bool first_pose : {false, true}) {
-      if (first_pose && !engine.finds_all) continue;
-      query.first_pose = first_pose;
-      const int threads = next_threads();
-      const HitSet hits = engine.run(cloud, query, threads).hits;
-      CAPTURE(engine.name, threads, first_pose, query.between_poses, cloud.cell_points(),
-              cloud.cells().size());
-      std::uint64_t wrong = 0;
-      for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-        if (!cloud.is_used(slot)) {
-          wrong += hits.contains(slot);
-          continue;
-        }
-        const std::uint32_t pose = expected[cloud.source(slot)];
-        wrong += hits.contains(slot) != (pose != kNoPose);
-        if (first_pose) wrong += hits.first_pose(slot) != pose;
-      }
-      check_equal(wrong, 0);
-      CHECK(hits.count() == colliding);
-    }
+    const int threads = next_threads();
+    CAPTURE(engine.name, threads, query.first_pose, query.between_poses, query.clearance,
+            query.profile, query.radius, cloud.cell_points(), cloud.cells().size());
+    check_equal(expected.wrong(engine.run(cloud, query, threads, 0), cloud, query), 0);
   }
-  return colliding;
-}
-
-using Oracle = std::vector<Clearance>;
-
-/// Checks every clearance and every hit of one engine, with and without first poses.
-std::uint64_t check_clearances(const Engine& engine, const MemoryCloud& cloud, const Oracle& least,
-                               const std::vector<std::uint32_t>& first_poses, const Query& query) {
-  const double limit = query.clearance * query.clearance;
-  const int threads = next_threads();
-  const SearchResult answer = engine.run(cloud, query, threads);
-  CAPTURE(engine.name, threads, query.clearance, query.radius, query.first_pose,
-          cloud.cell_points());
-  std::uint64_t wrong = 0, wrong_hits = 0, found = 0;
-  for (std::uint64_t slot = 0; slot < cloud.entry_count(); ++slot) {
-    Clearance expected;
-    std::uint32_t pose = kNoPose;
-    if (cloud.is_used(slot)) {
-      const Clearance& oracle = least[cloud.source(slot)];
-      if (oracle.squared < limit) expected = oracle;
-      pose = first_poses[cloud.source(slot)];
-    }
-    found += expected.found();
-    wrong += answer.clearances.at(slot) != expected;
-    wrong_hits += answer.hits.contains(slot) != (pose != kNoPose);
-    if (query.first_pose) wrong_hits += answer.hits.first_pose(slot) != pose;
-  }
-  check_equal(wrong, 0);
-  check_equal(wrong_hits, 0);
-  return found;
-}
-
-std::uint64_t check_clearances(const MemoryCloud& cloud, const Oracle& least,
-                               const std::vector<std::uint32_t>& first_poses, const Query& query) {
-  std::uint64_t found = 0;
-  for (const Engine& engine : engines()) {
-    if (engine.finds_all) found = check_clearances(engine, cloud, least, first_poses, query);
-  }
-  return found;
-}
-
-Query with_clearance(Query query, double clearance, bool first_pose) {
-  query.clearance = clearance;
-  query.first_pose = first_pose;
-  return query;
-}
-
-std::uint64_t check_packed(const MemoryCloud& cloud, const Expected& expected, Query query) {
-  query.between_poses = false;
-  const std::uint64_t colliding = check_results(cloud, expected.at_poses, query);
-  if (query.model.is_surface()) return colliding;
-  query.between_poses = true;
-  CHECK(check_results(cloud, expected.between_poses, query) >= colliding);
-  return colliding;
-}
-
-/// Which points a query ignores, by the definition of its classes and boxes.
-std::vector<bool> ignored_by(const Query& query, const std::vector<Vec3>& positions,
-                             std::span<const std::uint8_t> classes) {
-  std::vector<bool> ignored;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Vec3& p = positions[i];
-    const bool by_class = std::ranges::count(query.ignore_classes, classes[i]) > 0;
-    const bool by_box = std::ranges::any_of(query.ignore_boxes, [&p](const Box& box) {
-      return p.x >= box.lo.x && p.x <= box.hi.x && p.y >= box.lo.y && p.y <= box.hi.y &&
-             p.z >= box.lo.z && p.z <= box.hi.z;
-    });
-    ignored.push_back(by_class || by_box);
-  }
-  return ignored;
-}
-
-/// The nearest point of every pose by brute force, as if the ignored points were not there.
-std::vector<NearestPoint> nearest_of_searched(const std::vector<Vec3>& positions,
-                                              const std::vector<bool>& ignored,
-                                              const Query& query) {
-  std::vector<Vec3> searched;
-  std::vector<std::uint64_t> sources;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (ignored[i]) continue;
-    searched.push_back(positions[i]);
-    sources.push_back(i);
-  }
-  std::vector<NearestPoint> nearest = nearest_points(searched, query);
-  for (NearestPoint& point : nearest) {
-    if (point.source < sources.size()) point.source = sources[point.source];
-  }
-  return nearest;
 }
 
 }  // namespace
 
-std::span<const Engine> engines() { return under_test; }
+std::vector<Engine>& engines() {
+  static std::vector<Engine> engines{{"kdtree", kdtree, false},
+                                     {"sweep", sweep, true},
+                                     {"sweep as on CUDA", sweep_as_on_cuda, true},
+                                     {"grid", grid, false}};
+  return engines;
+}
 
-void test_only(std::vector<Engine> engines) { under_test = std::move(engines); }
+Expected::Expected(const EngineScene& scene) : query_(scene.query), points_(scene.points.size()) {
+  const std::vector<Vec3> positions = positions_of(scene.points, scene.quantisation);
+  const std::vector<std::uint8_t> classes = classes_of(scene);
+  for (std::size_t i = 0; i < points_; ++i) {
+    if (is_ignored(query_, positions[i], classes[i])) continue;
+    searched_.push_back(positions[i]);
+    sources_.push_back(i);
+  }
+}
 
-std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
-                                               const Quantisation& quantisation, Query query) {
-  query.between_poses = true;
-  const auto expected = brute_force_first_poses(positions_of(points, quantisation), query);
-  check_results(MemoryCloud(points, quantisation, {128, 0}), expected, query);
+const std::vector<std::uint32_t>& Expected::first_poses(bool between_poses) const {
+  auto& first = first_poses_[between_poses ? 1 : 0];
+  if (!first) {
+    Query query = query_;
+    query.between_poses = between_poses;
+    first = spread(brute_force_first_poses(searched_, query), sources_, points_, kNoPose);
+  }
+  return *first;
+}
+
+const std::vector<Clearance>& Expected::clearances() const {
+  if (!clearances_) {
+    clearances_ = spread(brute_force_clearances(searched_, query_), sources_, points_, {});
+  }
+  return *clearances_;
+}
+
+const std::vector<NearestPoint>& Expected::nearest() const {
+  if (!nearest_) {
+    Query query = query_;
+    query.profile = 1e200;  // its square is infinite
+    nearest_ = brute_force_profile(searched_, query);
+    for (NearestPoint& point : *nearest_) {
+      if (point.source < sources_.size()) point.source = sources_[point.source];
+    }
+  }
+  return *nearest_;
+}
+
+std::uint64_t Expected::colliding(bool between_poses) const {
+  const auto& first = first_poses(between_poses);
+  return first.size() - static_cast<std::uint64_t>(std::ranges::count(first, kNoPose));
+}
+
+std::uint64_t Expected::wrong(const SearchResult& answer, const MemoryCloud& cloud,
+                              const Query& query) const {
+  std::uint64_t wrong = 0, with_point = 0;
+  for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
+    std::uint32_t pose = kNoPose;
+    Clearance least;
+    if (cloud.is_used(entry)) {
+      const std::uint64_t source = cloud.source(entry);
+      pose = first_poses(query.between_poses)[source];
+      if (query.clearance > 0) least = clearances()[source];
+      if (!(least.squared < query.clearance * query.clearance)) least = {};
+    }
+    wrong += answer.hits.contains(entry) != (pose != kNoPose);
+    if (query.first_pose) wrong += answer.hits.first_pose(entry) != pose;
+    if (query.clearance > 0) wrong += answer.clearances.at(entry) != least;
+  }
+  if (!(query.profile > 0)) return wrong;
+  const double limit = rounded_product(query.profile, query.profile);
+  REQUIRE(answer.profile.poses() == nearest().size());
+  for (std::size_t pose = 0; pose < nearest().size(); ++pose) {
+    const ProfilePoint point = answer.profile.at(pose);
+    if (!(nearest()[pose].squared < limit)) {
+      wrong += point.found();
+      continue;
+    }
+    ++with_point;
+    wrong += point.squared != nearest()[pose].squared || point.source != nearest()[pose].source ||
+             !cloud.is_used(point.entry) || cloud.source(point.entry) != point.source;
+  }
+  return wrong + (answer.profile.count() != with_point);
+}
+
+Expected check_engines(const EngineScene& scene, const Asked& asked) {
+  Expected expected(scene);
+  std::size_t variant = scene.points.size();
+  for (const MemoryCloudOptions& packing : asked.packings) {
+    const MemoryCloud cloud(scene.points, classes_of(scene), scene.quantisation, packing);
+    for (const Query& query : questions(scene, asked.reach, variant++)) {
+      check_answers(cloud, expected, query);
+    }
+  }
   return expected;
 }
 
-std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Query& query, const MemoryCloudOptions& packing) {
-  const auto environment = positions_of(points, quantisation);
-  const Expected expected(environment, query);
-  const MemoryCloud cloud(points, quantisation, packing);
-  check_clearances(cloud, brute_force_clearances(environment, query), expected.at_poses,
-                   with_clearance(query, 2.5 * query.radius, points.size() % 2 == 0));
-  check_profile(cloud, nearest_points(environment, query), with_profile(query, points.size()));
-  return check_packed(cloud, expected, query);
-}
-
-std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Query& query) {
-  return check_engines(points, std::vector<std::uint8_t>(points.size()), quantisation, query);
-}
-
-std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
-                            const Quantisation& quantisation, const Query& query) {
-  const auto environment = positions_of(points, quantisation);
-  const std::vector<bool> ignored = ignored_by(query, environment, classes);
-  Expected expected(environment, query);
-  Oracle least = brute_force_clearances(environment, query);
-  for (std::size_t i = 0; i < ignored.size(); ++i) {
-    if (!ignored[i]) continue;
-    expected.at_poses[i] = kNoPose;
-    if (!query.model.is_surface()) expected.between_poses[i] = kNoPose;
-    least[i] = {};
+ToleratedResults check_tolerance(const EngineScene& scene, double tolerance) {
+  const Expected expected(scene);
+  const long double radius = scene.query.radius;
+  ToleratedResults out{.colliding = expected.colliding()};
+  for (const Engine& engine : engines()) {
+    if (!engine.finds_all) continue;
+    std::vector<bool> first;
+    int threads = 1;
+    for (const MemoryCloudOptions& packing :
+         {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{128, 300}}) {
+      const MemoryCloud cloud(scene.points, scene.quantisation, packing);
+      const HitSet hits = engine.run(cloud, scene.query, threads++, tolerance).hits;
+      std::vector<bool> answer(scene.points.size());
+      for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
+        if (cloud.is_used(entry)) answer[cloud.source(entry)] = hits.contains(entry);
+      }
+      std::uint64_t differing = 0, too_far = 0;
+      for (std::size_t i = 0; i < answer.size(); ++i) {
+        if (answer[i] == (expected.first_poses(false)[i] != kNoPose)) continue;
+        ++differing;
+        // Computed with more digits than the engines use.
+        const long double d = std::sqrt(static_cast<long double>(expected.clearances()[i].squared));
+        too_far += std::abs(d - radius) > tolerance;
+      }
+      CAPTURE(engine.name, packing.cell_points, scene.query.radius, tolerance);
+      check_equal(too_far, 0);
+      if (first.empty()) {
+        first = answer;
+        out.differing += differing;
+      }
+      CHECK((answer == first));
+    }
   }
-  const std::vector<NearestPoint> nearest = nearest_of_searched(environment, ignored, query);
-  std::uint64_t colliding = 0;
-  double of_radius = 0.4;
-  bool first_pose = false;
-  std::size_t variant = points.size();
-  for (const MemoryCloudOptions& packing :
-       {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{65536, 0},
-        MemoryCloudOptions{128, 500}}) {
-    const MemoryCloud cloud(points, classes, quantisation, packing);
-    colliding = check_packed(cloud, expected, query);
-    check_clearances(cloud, least, expected.at_poses,
-                     with_clearance(query, of_radius * query.radius, first_pose));
-    check_profile(cloud, nearest, with_profile(query, variant++));
-    first_pose = !first_pose;
-    of_radius *= 2.5;
-  }
-  return colliding;
-}
-
-std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
-                               const Query& query) {
-  const auto environment = positions_of(points, quantisation);
-  return check_clearances(MemoryCloud(points, quantisation, {256, 0}),
-                          brute_force_clearances(environment, query),
-                          brute_force_first_poses(environment, query), query);
+  return out;
 }
 
 }  // namespace clearway

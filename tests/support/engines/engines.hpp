@@ -1,92 +1,93 @@
 #pragma once
 
-#include <functional>
-#include <memory>
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "clearway/query.hpp"
-#include "core/page/page_pool.hpp"
-#include "core/query/search_result.hpp"
-#include "core/sweep/sweep_filter.hpp"
 #include "support/engines/answer_sets.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/memory_cloud.hpp"
 
 namespace clearway {
 
-/// An engine under test. Every engine runs through the same cases, against brute force.
+/// An engine under test. Every engine runs through the same scenes, against brute force.
 struct Engine {
   std::string name;
-  SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
-  /// Whether it finds more than which points collide with a model of points at its poses
+  /// tolerance: metres; 0: the search is exact.
+  SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads, double tolerance);
+  /// Whether it finds more than which points collide with a model of points at its poses, and can
+  /// search within a tolerance
   bool finds_all;
-  /// Searches within a tolerance; null where an engine cannot
-  SearchResult (*run_within)(const PackedCloud& cloud, const Query& query, int threads,
-                             double tolerance) = nullptr;
 };
 
-std::span<const Engine> engines();
+/// The engines that every scene is searched with. Another program may put its own in their place.
+std::vector<Engine>& engines();
 
-/// Makes a sweep engine of points, of triangles or of solids. What the engine is given outlives it.
-struct MakeSweep {
-  template <typename Element>
-  using Of = std::function<std::unique_ptr<PageEngine>(
-      const SweepFilterOf<Element>& filter, const PackedCloud& cloud, const SlotLayout& layout)>;
+/// A small scene.
+struct EngineScene {
+  std::vector<Quantum> points;
+  Quantisation quantisation;
+  Query query;
+  std::vector<std::uint8_t> classes = {};  ///< of each point; without any, all are 0
 
-  /// make: a function that takes filters of any element.
-  template <typename Make>
-  MakeSweep(Make make) : points(make), triangles(make), solids(make) {}  // NOLINT(*-explicit-*)
-
-  Of<Vec3> points;
-  Of<Triangle> triangles;
-  Of<SolidTriangle> solids;
+  void move_far_away(const Vec3& offset) {
+    for (int k = 0; k < 3; ++k) quantisation.offset[k] += offset[k];
+    for (Pose& pose : query.poses) {
+      for (int k = 0; k < 3; ++k) pose.translation[k] += offset[k];
+    }
+  }
 };
 
-/// Runs an engine that can search within a tolerance without one.
-template <auto run_within>
-SearchResult run_exactly(const PackedCloud& cloud, const Query& query, int threads) {
-  return run_within(cloud, query, threads, 0);
-}
+/// What brute force finds in a scene, as if ignored points were not there. Everything is computed
+/// when it is first asked for.
+class Expected {
+ public:
+  explicit Expected(const EngineScene& scene);
 
-/// Plans the query, and runs it in an engine whose numbers of slots and of cells a page follow from
-/// the cloud's size, so that all of them occur. whole_field: for an engine that cannot make parts
-/// of the field. tolerance: metres; 0: the search is exact.
-SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance,
-                       const MakeSweep& make, bool whole_field = false);
+  /// The first pose of every point, or kNoPose.
+  const std::vector<std::uint32_t>& first_poses(bool between_poses) const;
+  const std::vector<Clearance>& clearances() const;  ///< of every point, however far it is
+  const std::vector<NearestPoint>& nearest() const;  ///< of every pose, however far it is
+  std::uint64_t colliding(bool between_poses = false) const;
 
-/// Makes engines() return these from now on.
-void test_only(std::vector<Engine> engines);
+  /// The number of points and poses for which the answer to the query is wrong.
+  std::uint64_t wrong(const SearchResult& answer, const MemoryCloud& cloud,
+                      const Query& query) const;
 
-/// Runs every engine on the points, packed in several ways, and checks the answers against brute
-/// force: the set at poses, and where an engine finds all, with first poses, between poses for a
-/// model of points, and clearances below and above the radius. Returns the
-/// number of points that collide at a pose.
-std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Query& query);
+ private:
+  Query query_;
+  std::vector<Vec3> searched_;
+  std::vector<std::uint64_t> sources_;  ///< the index of each searched point
+  std::size_t points_;
+  mutable std::optional<std::vector<std::uint32_t>> first_poses_[2];
+  mutable std::optional<std::vector<Clearance>> clearances_;
+  mutable std::optional<std::vector<NearestPoint>> nearest_;
+};
 
-/// Checks every engine, as the other check_engines do, on points with classes of which the query
-/// ignores some, by class or box. Returns the number of points that collide at a pose and are not
-/// ignored.
-std::uint64_t check_engines(std::span<const Quantum> points, std::span<const std::uint8_t> classes,
-                            const Quantisation& quantisation, const Query& query);
+/// Ways to pack points: cells of one block, of many, of all; and cells in several buckets.
+inline const std::vector<MemoryCloudOptions> kPackings{{64, 0}, {1000, 0}, {65536, 0}, {128, 500}};
 
-/// Checks every engine between poses alone, with the points packed in one way. Returns every
-/// point's first pose, or kNoPose.
-std::vector<std::uint32_t> check_between_poses(std::span<const Quantum> points,
-                                               const Quantisation& quantisation, Query query);
+struct Asked {
+  double reach = 0;  ///< metres: clearances and profiles up to this are asked for, too
+  std::vector<MemoryCloudOptions> packings = kPackings;
+};
 
-/// Checks every engine, as the other check_engines do, on points that are packed in one way.
-std::uint64_t check_engines(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Query& query, const MemoryCloudOptions& packing);
+/// Runs every engine on the scene and checks the answers against brute force: the set at poses, and
+/// where an engine finds all, with first poses, between poses for a model of points, and clearances
+/// and profiles from below the radius to above it.
+Expected check_engines(const EngineScene& scene, const Asked& asked = {});
 
-/// Checks the clearances that the query asks for. Returns how many there are.
-std::uint64_t check_clearances(std::span<const Quantum> points, const Quantisation& quantisation,
-                               const Query& query);
+struct ToleratedResults {
+  std::uint64_t colliding = 0;  ///< number of points that collide in truth
+  std::uint64_t differing = 0;  ///< number of answers, of all engines, that differ from the truth
+};
 
-/// Checks the profile that the query asks for, with the points packed in several ways. Returns how
-/// many poses have a point.
-std::uint64_t check_profile(std::span<const Quantum> points, const Quantisation& quantisation,
-                            const Query& query);
+/// Runs every engine that can search within a tolerance on the scene, packed in several ways.
+/// Checks that an answer is wrong only where the least distance, by brute force, is within the
+/// tolerance of the radius, and that an engine answers alike however the points are packed.
+ToleratedResults check_tolerance(const EngineScene& scene, double tolerance);
 
 }  // namespace clearway

@@ -1,15 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
 #include "clearway/query.hpp"
-#include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_scene.hpp"
+#include "cpu/grid_cpu_engine.hpp"
 #include "support/engines/answer_sets.hpp"
 
 namespace clearway {
-
-class PageEngine;
 
 struct GridRun {
   GridOptions options = {};
@@ -20,21 +19,22 @@ struct GridRun {
 };
 
 /// Runs the engine `kdtree` over a whole cloud, as run_grid() runs its engine.
-HitSet run_kdtree(const PackedCloud& cloud, const Query& query, const GridRun& run);
+SearchResult run_kdtree(const PackedCloud& cloud, const Query& query, const GridRun& run);
 
 /// Runs the engine `grid` on the CPU over a whole cloud. Every cell is searched, with nodes of the
 /// motion tree that together hold every pose: whole ranges for one cell, finer ones for the next.
 /// statistics: the run's are added to them.
-HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
-                GridStatistics* statistics = nullptr);
+SearchResult run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
+                      GridStatistics* statistics = nullptr);
 
-/// Makes an engine for the scene and returns what run_in finds with it, from cells staged in pages
-/// of page_bytes.
-using RunPages = std::function<HitSet(const GridScene& scene, std::uint64_t page_bytes,
-                                      const std::function<HitSet(PageEngine& engine)>& run_in)>;
+/// Runs an engine over pages.
+using RunIn = std::function<SearchResult(PageEngine& engine)>;
 
-/// Searches a whole cloud as the other run_grid does, with the engine that run_pages makes.
-HitSet run_grid(const PackedCloud& cloud, const Query& query, const GridRun& run,
-                const RunPages& run_pages);
+/// Searches a whole cloud as the other run_grid does, with the engine that run_pages makes for the
+/// scene and gives to run_in.
+SearchResult run_grid(
+    const PackedCloud& cloud, const Query& query, const GridRun& run,
+    const std::function<SearchResult(const GridScene& scene, const SlotLayout& layout,
+                                     const RunIn& run_in)>& run_pages);
 
 }  // namespace clearway

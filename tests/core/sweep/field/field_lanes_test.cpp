@@ -1,8 +1,9 @@
 #include "core/sweep/field/field_lanes.hpp"
 
+#include <bit>
 #include <cmath>
-#include <random>
 
+#include "core/geometry/triangle_box.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/trajectory/motion_tree.hpp"
 #include "core/util/lane_bits.hpp"
@@ -15,50 +16,38 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr double kRadius = 0.2;
-
-std::vector<Vec3> rod() {
-  std::vector<Vec3> points;
-  for (int i = 0; i < 200; ++i) points.push_back({0.02 * i, 0.3 * std::sin(0.1 * i), 1});
-  return points;
-}
-
 /// Looks up random points in lanes and one by one. Some of them lie near the model, some beyond the
 /// bricks and some outside of the lattice, which coordinates without a value do as well.
 void check_lanes(const ModelField& field, const Box& box) {
-  const std::vector<Pose> poses = {{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, 0}},
+  const std::vector<Pose> poses = {translation({0, 0, 0}),
                                    {{0, -1, 0, 1, 0, 0, 0, 0, 1}, {3, -2, 0.5}}};
   const MotionTree motion(poses, box, false);
   const ModelFieldRef ref = field.ref();
   FieldLanes lanes(ref);
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> unit(-1, 1);
+  Random random(5);
   std::uint64_t wrong = 0, far = 0, near = 0;
   for (int round = 0; round < 400; ++round) {
     const InversePose& back = motion.inverse_pose(round % 2);
     const std::uint32_t count = 1 + round % FieldLanes::kMost;
     const double size = round % 5 == 0 ? 30 : round % 5 == 1 ? 3 : 0.7;
+    const Box around = Box{box.centre(), box.centre()}.grown(size);
     lanes.clear();
     std::vector<Vec3> points;
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3 centre = box.centre();
-      Vec3 x{centre.x + size * unit(random), centre.y + size * unit(random),
-             centre.z + size * unit(random)};
+      Vec3 x = random_point(random, around);
       if (round % 7 == 0 && i % 9 == 0) x.x = i % 2 == 0 ? std::nan("") : 1e300;
-      points.push_back(transform(poses[round % 2], x));
-      lanes.add(points.back());
+      lanes.add(points.emplace_back(transform(poses[round % 2], x)));
     }
     check_equal(lanes.count(), count);
     lanes.look_up(back);
-    const double reach = 0.25 + 0.5 * std::abs(unit(random));
+    const double reach = uniform(random, 0.25, 0.75);
     const std::uint64_t within = lanes.within(back.least, reach);
     for (std::uint32_t i = 0; i < count; ++i) {
-      const Vec3 x = back.apply(points[i]);
-      const ModelFieldRef::Bounds bounds = ref.bounds(x);
-      const bool same_bound =
-          lanes.squared_lower(i) == bounds.squared_lower ||
-          (std::isnan(lanes.squared_lower(i)) && std::isnan(bounds.squared_lower));
-      wrong += !same_bound || lanes.near(i) != bounds.near;
+      const ModelFieldRef::Bounds bounds = ref.bounds(back.apply(points[i]));
+      const double lower = lanes.squared_lower(i);
+      wrong +=
+          lower != bounds.squared_lower && !(std::isnan(lower) && std::isnan(bounds.squared_lower));
+      wrong += lanes.near(i) != bounds.near;
       const bool is_far = farther(back.least, bounds.squared_lower, reach);
       wrong += is_far == ((within >> i & 1) != 0);
       (is_far ? far : near) += 1;
@@ -73,26 +62,23 @@ void check_lanes(const ModelField& field, const Box& box) {
 
 }  // namespace
 
-TEST_CASE("many places are looked up as one by one") {
-  const ModelTree tree(rod());
+TEST_CASE("many places are looked up as one by one, in fields of points and of a surface") {
+  std::vector<Vec3> rod;
+  for (int i = 0; i < 200; ++i) rod.push_back({0.02 * i, 0.3 * std::sin(0.1 * i), 1});
+  const ModelTree tree(rod);
   for (const bool by_need : {false, true}) {
     for (const double reach : {0.0, 2.0}) {
       CAPTURE(by_need, reach);
-      check_lanes(ModelField(tree, kRadius, {.reach = reach, .by_need = by_need}, 1), tree.box());
+      check_lanes(ModelField(tree, 0.2, {.reach = reach, .by_need = by_need}, 1), tree.box());
     }
   }
-}
-
-TEST_CASE("many places are looked up as one by one in a field of a surface") {
-  const Surface surface = box_surface({{0, 0, 0}, {4, 2, 1.5}});
-  std::vector<Triangle> model;
-  for (std::size_t i = 0; i < surface.triangles.size(); ++i) model.push_back(surface.at(i));
-  const TriangleTree tree(model);
-  check_lanes(ModelField(tree, kRadius, {.by_need = true}, 1), tree.box());
+  const Surface box = box_surface({{0, 0, 0}, {4, 2, 1.5}});
+  const TriangleTree surface(triangles_of({box.vertices, box.triangles}));
+  check_lanes(ModelField(surface, 0.2, {.by_need = true}, 1), surface.box());
 }
 
 TEST_CASE("bytes are packed into bits") {
-  std::mt19937_64 random(1);
+  Random random(1);
   for (int round = 0; round < 100; ++round) {
     const std::uint64_t bits = round == 0 ? 0 : round == 1 ? ~std::uint64_t{0} : random();
     std::uint8_t flags[64];
