@@ -121,7 +121,7 @@ struct Answer : TableSummary {
   /// keep them, and those of the machine that searched are not among them.
   std::vector<Message> warnings;
   /// How much of the path the answer is about, because bodies on pivots have no pose at its ends.
-  /// nullopt for one model, whose path was searched to its whole length.
+  /// nullopt in the result file of one model, whose path was searched to its whole length.
   std::optional<SearchedLength> searched;
 
   /// The error budget; nullopt if none was given, and the verdict is about the scanned points.

@@ -129,16 +129,20 @@ void run_plan(const CampaignPlanOptions& options) {
   const std::string text = campaign::plan_text(plan);
   const fs::path planned = options.folder / campaign::kPlanName;
   std::error_code unknown;
-  if (fs::exists(planned, unknown) && text_of_file(planned) == text) {
-    spdlog::info("{}: is this plan already; nothing to do", planned.string());
-  } else if (fs::exists(planned, unknown) && !options.force) {
+  const bool exists = fs::exists(planned, unknown);
+  const bool same = exists && text_of_file(planned) == text;
+  if (exists && !same && !options.force) {
     throw UsageError(planned.string() + ": is another plan; --force replaces it. Finished runs " +
                      "of the same questions stay");
+  }
+  // The scripts hold what the plan does not, such as the options of sbatch.
+  make_folder(options.folder / "slurm");
+  const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
+  write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
+  write_script(options.folder / "submit.sh", campaign::submit_text(job));
+  if (same) {
+    spdlog::info("{}: is this plan already; only the scripts are written", planned.string());
   } else {
-    make_folder(options.folder / "slurm");
-    const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
-    write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
-    write_script(options.folder / "submit.sh", campaign::submit_text(job));
     replace_file(planned, text);
   }
   begin_ledgers(ledgers);

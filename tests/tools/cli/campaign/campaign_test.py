@@ -140,7 +140,9 @@ class Plans(Campaigns):
         tasks = json.loads(text)["tasks"]
         self.assertEqual([task["task"] for task in tasks], list(range(12)))
         self.assertEqual([tasks[3]["folder"], tasks[3]["question"]["radius"]], ["runs/v00/r01/25cm", 0.25])
-        self.plan("stable", two, 0, "is this plan already")
+        self.plan("stable", {**two, "slurm": ["--partition=long"]}, 0, "is this plan already")
+        self.assertIn("--partition=long", "".join((self.place / "stable" / name).read_text()
+                                                  for name in ("campaign.sbatch", "submit.sh")))
         self.report("stable")
         self.assertIn("<h2>Radius 25 cm</h2>", (self.place / "stable/index.html").read_text())
         self.plan("stable", None, 2, "--force replaces it")
