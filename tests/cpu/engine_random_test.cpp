@@ -35,9 +35,11 @@ PlainScene slow_scene(std::uint64_t seed) {
     const Surface load = box_surface({{-3, -0.4, -0.3}, {3, 0.5, 0.2}});
     if (kind == Kind::kSurface) all.query.model = surface_model(load);
     if (kind == Kind::kSolids) all.query.model = solid_model(load);
-    all.query.poses = slow_path(300, below(random, 2) == 0 ? 0.05 : 1e-3);
-    for (int i = 0; i < 200; ++i) {
-      const double off = i % 9 == 0 ? -0.3 : all.query.radius + uniform(random, -0.01, 0.1);
+    constexpr double kBends[] = {0, 1e-3, 0.05};
+    all.query.radius = 0.1;
+    all.query.poses = slow_path(400, kBends[below(random, 3)]);
+    for (int i = 0; i < 250; ++i) {
+      const double off = i % 5 == 0 ? -0.3 : all.query.radius + uniform(random, -0.01, 0.1);
       const double x = uniform(random, -1, 6);
       places.push_back(i % 2 == 0 ? Vec3{x, 0.5 + off, uniform(random, -0.3, 0.2)}
                                   : Vec3{x, uniform(random, -0.4, 0.5), 0.2 + off});
