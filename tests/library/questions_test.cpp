@@ -38,7 +38,8 @@ void add(const Truth& truth, Tally& tally) {
 
 }  // namespace
 
-TEST_CASE("random questions have the true answer, in a session, in parts and in pieces, too") {
+TEST_CASE(
+    "random questions have the answer of brute force, and its bytes, however they are asked") {
   Tally tally;
   int empty = 0, pieces = 0;
   for (const bool plain : {false, true}) {
@@ -61,15 +62,18 @@ TEST_CASE("random questions have the true answer, in a session, in parts and in 
       add(truth, tally);
       empty += truth.collisions.size() == 0;
 
+      // In a session
       const SessionAnswer answer = session.search(query, {.engine = engine});
       check(truth, answer);
       CHECK(answer.verdict() == report.verdict());
       answer.save(output, true);
       check_same(bytes_of(output), bytes);
 
+      // In cells of another size
       search(Store(other_cells), query, output, options);
       check_same(bytes_of(output), bytes);
 
+      // On a GPU, where there is one
       if (engine != Engine::kKdtree && may_take_gpus({})) {
         options.device = Device::kCuda;
         search(Store(scan.store), query, output, options);
@@ -77,6 +81,7 @@ TEST_CASE("random questions have the true answer, in a session, in parts and in 
         options.device = Device::kCpu;
       }
 
+      // Stopped again and again, and resumed; then asked once more
       SearchReport resumed;
       check_same(
           searched_in_pieces(scan, query, random, {.engine = engine, .threads = threads}, resumed),
@@ -90,6 +95,7 @@ TEST_CASE("random questions have the true answer, in a session, in parts and in 
       check_answer(truth, finished);
       pieces += resumed.resumed_cells > 0;
 
+      // In parts that are merged
       if (query.depth) continue;  // only the whole search knows which points are free
       const std::uint32_t counts[] = {1, 2, 3, 7};
       MergeReport merged;

@@ -211,22 +211,27 @@ TEST_CASE("a position and a quaternion without time need the order") {
   check_equal(wxyz.translation[2], 9);
 }
 
-TEST_CASE("a unit scales positions alone, into the environment's unit") {
+TEST_CASE("a unit scales positions alone") {
   const Pose pose = poses_of("0 -1 0 7000 1 0 0 8000 0 0 1 9000", {.metres_per_unit = 0.001}).at(0);
   check_near(pose.position(), {7, 8, 9}, 0);
   check_equal(pose.rotation[1], -1);
-  const std::string quaternion = ",qx,qy,qz,qw\n7000,8000,9000,0,0,0,1\n";
-  check_equal(place_of("x[mm],y[mm],z[mm]" + quaternion).y, 8);
-  check_equal(place_of("x_cm,y_cm,z_cm" + quaternion).y, 80);
-  check_equal(place_of("x (ft),y (ft),z (ft)" + quaternion).x, 7000 * 0.3048);
+  const std::string rest = ",qx,qy,qz,qw\n7000,8000,9000,0,0,0,1\n";
+  check_equal(place_of("x[mm],y[mm],z[mm]" + rest).y, 8);
+  check_equal(place_of("x_cm,y_cm,z_cm" + rest).y, 80);
+  check_equal(place_of("x (ft),y (ft),z (ft)" + rest).x, 7000 * 0.3048);
+  // 9 mm become the double nearest to 0.009, as for models.
+  check_equal(place_of("1 0 0 9 0 1 0 3.048 0 0 1 0\n", {.metres_per_unit = 0.001}).x, 0.009);
+}
+
+TEST_CASE("a path in an environment in feet becomes feet, with its lever arm") {
   const std::string row = "1 0 0 9 0 1 0 3.048 0 0 1 0\n";
+  // A path without a unit is in feet too, and 3.048 m are 10 feet.
   check_equal(place_of(row, {.environment_unit = 0.3048}).y, 3.048);
   CHECK(place_of(row, {.metres_per_unit = 1, .environment_unit = 0.3048}).y == Approx(10));
   const std::string named = "x_ft,y_ft,z_ft,qx,qy,qz,qw\n10,20,30,0,0,0,1\n";
+  // A lever arm is in the unit of the environment.
   const TrajectoryOptions arm{.environment_unit = 0.3048, .lever_arm = {0, 4, 0}};
   check_near(place_of(named, arm), {10, 16, 30}, 1e-12);
-  // 9 mm become the double nearest to 0.009, as for models.
-  check_equal(place_of(row, {.metres_per_unit = 0.001}).x, 0.009);
 }
 
 TEST_CASE("a last number that ends with its point is warned of") {

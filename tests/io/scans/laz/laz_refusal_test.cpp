@@ -12,7 +12,8 @@ using namespace clearway::test;
 
 namespace {
 
-/// A number of so many bytes at a place, and the words with which the file is refused for it.
+/// A number of so many bytes at a place, and the words with which the file is refused for it; none
+/// where it is read.
 struct Edit {
   std::size_t at;
   unsigned size;
@@ -51,12 +52,14 @@ TEST_CASE("what a LAZ record must not say is refused, with what was expected") {
 
 TEST_CASE("a LAZ header and its record have to agree") {
   LazBytes laz = laz_bytes(1, 20);
+  // Byte 104 is the point format, 1 here, with the bits 0x80 and 0x40 for compressed points
   check_refused_after(laz, {{104, 1, 1, "ends at byte"},
                             {104, 1, 0xC1, "before LASzip 1.0"},
-                            {104, 1, 0x41, ""},
+                            {104, 1, 0x41, ""},  // is read
                             {104, 1, 0x8B, "point format 11"},
                             {laz.las.points_offset() + 2, 1, 'x', "byte 104 ... laszip encoded"}});
   check_refused_after(laz_bytes(6, 20), {{104, 1, 0x81, "point format 1"}});
+  // A LAS file that is not compressed, with the record of LAZ
   laz.las.vlrs = {{"laszip encoded", 22204, "payload"}};
   check_says(refusal(laz.las.build()), "byte 104 ... not compressed");
 }
