@@ -176,6 +176,30 @@ TEST_CASE("a topic of BCF names the stations of its conflict") {
              "Conflict 1 at 0 m to 12.5 m, station 1250 to 1237.5 m");
 }
 
+TEST_CASE("a topic of BCF says how much is missing, or that the model is touched") {
+  const Found found{.quanta = {{0, 0, 0}}};
+  const ResultHeader header = found.header();
+  const ConflictOptions options;
+  const Answer answer = answer_of(header);
+  struct Row {
+    double least, missing;
+    Bound is;
+    const char* words;
+  };
+  for (const Row& row : {Row{0, 0.1, Bound::kExact, "; 0.1 m are missing."},
+                         Row{0, 0.1, Bound::kAtLeast, "; it touches the model."},
+                         Row{0.02, 0.08, Bound::kAtLeast, "; at least 0.08 m are missing."}}) {
+    Conflicts conflicts;
+    conflicts.listed.push_back({.id = 1,
+                                .least_distance = row.least,
+                                .nearest_pose = 0,
+                                .encroachment = row.missing,
+                                .encroachment_is = row.is});
+    const ConflictFile file{conflicts, options, header, answer, found.poses, {}};
+    check_says(bcf_markup(file, conflicts.listed[0]), row.words);
+  }
+}
+
 TEST_CASE("strings of JSON are escaped, and bytes that are not UTF-8 replaced") {
   check_equal(json_string("a\"b\\c\n\x01"), "\"a\\\"b\\\\c\\u000a\\u0001\"");
   CHECK(json_string("\xc3\xa4 \xe2\x82\xac \xf0\x9f\x9a\x82") ==

@@ -291,4 +291,8 @@ TEST_CASE("a result without seen space has no groups, and another path is refuse
   const UnseenGroups none = road.groups();
   CHECK(none.listed.empty());
   CHECK(none.front.swept.empty());
+  // Neither has one without poses.
+  road.query.seen = true;
+  road.query.poses.clear();
+  CHECK(road.groups().listed.empty());
 }

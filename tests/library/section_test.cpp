@@ -354,6 +354,9 @@ TEST_CASE("tables of a section are written as text") {
     }
     CHECK(lines.size() == 1 + rows);
     CHECK(lines[0].starts_with(header));
+    for (const std::string& line : lines) {
+      CHECK(std::ranges::count(line, ',') == std::ranges::count(lines[0], ','));
+    }
   };
   check_table(SectionTable::kCells, section.cells().size(), "j,k,first_pose");
   check_table(SectionTable::kBinCells, section.data().bin_cells.size(), "");

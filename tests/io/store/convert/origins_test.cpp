@@ -149,6 +149,10 @@ TEST_CASE("origins at zero and far away are warned of") {
   check_equal(StoreReader(scan.options.output).metadata().origins->quanta[0][1], 1000000000);
   scan.options.strict = true;
   check_says(scan.refusal(), "origins-far");
+  // Far means a kilometre, which 3,200 feet are not.
+  scan.options.unit = kMetresPerFoot;
+  scan.give(kOriginsHeader + "0,1,0,0\n50,0,3200,0\n");
+  check_equal(codes_of(scan.convert().warnings), "");
 }
 
 TEST_CASE("more origins than the memory may hold are refused with a number") {

@@ -38,6 +38,16 @@ class Divided(Campaigns):
         self.plan("divided", DIVIDED, 0, "is this plan already")
         self.plan("long", {"limits.shard_seconds": 1000}, 0, "2 tasks")
 
+    def test_a_run_may_have_two_shards(self):
+        seconds = 0.03
+        for _ in range(30):
+            seconds *= 1.2
+            self.plan("two", {"limits.shard_seconds": seconds}, more="--force")
+            tasks = tasks_of(self.place, "two")
+            if len(tasks) == 6:
+                break
+        self.assertEqual([task.get("shards") for task in tasks[:3]], [None, None, 2])
+
     def test_a_merge_waits_and_has_the_results_of_whole_runs(self):
         shards = f"0-{self.merge - 1}"
         self.run_tasks("divided", f"--task {self.merge}", 2, "waits for v00/r00/0.1/shards/1")
