@@ -38,6 +38,18 @@ inline std::vector<Pose> circle_poses(double k, double step, std::size_t count) 
   return poses;
 }
 
+/// Poses in steps from a millimetre to ten metres, turned about any axis by up to `turn`.
+inline std::vector<Pose> random_walk(Random& random, std::size_t count, double far, double turn) {
+  std::vector<Pose> poses;
+  Vec3 at{far, -far, far / 10};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double step = std::pow(10, uniform(random, -3, 1));
+    at = at + step * random_direction(random);
+    poses.push_back(rotation(random_direction(random), uniform(random, 0, turn), at));
+  }
+  return poses;
+}
+
 inline Vec3 axis_of(const Pose& pose, int axis) {
   return {pose.rotation[axis], pose.rotation[3 + axis], pose.rotation[6 + axis]};
 }

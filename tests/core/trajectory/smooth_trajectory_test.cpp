@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "clearway/smooth.hpp"
+#include "core/trajectory/paths.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/scenes.hpp"
@@ -21,9 +22,7 @@ const Box kCar{{-1, -0.9, 0}, {3.5, 0.9, 1.6}};
 
 /// A pose at (x, y, z) that is turned about z, and then tilted about its own x axis.
 Pose pose_at(double x, double y, double z, double heading, double roll = 0) {
-  const double c = std::cos(heading), s = std::sin(heading);
-  const double d = std::cos(roll), t = std::sin(roll);
-  return {{c, -s * d, s * t, s, c * d, -c * t, 0, t, d}, {x, y, z}};
+  return turned_at(about_z(heading) * about_x(roll), {x, y, z});
 }
 
 Vec3 moved(const Pose& pose, const Vec3& m) { return pose.rotated(m) + pose.position(); }
@@ -85,6 +84,8 @@ void check_promises(const std::vector<Pose>& given, const SmoothParameters& aske
   REQUIRE(!path.poses.empty());
   CHECK(path.largest_deviation <= asked.within);
   CHECK(path.mean_deviation <= path.largest_deviation);
+  check_equal(path.error_between_poses(), path.largest_deviation);
+  check_equal(path.error_at_poses(), path.largest_deviation + path.largest_step / 2);
   CHECK(std::ranges::is_sorted(path.place));
   CHECK(given[static_cast<std::size_t>(path.place.front())] == given[0]);
   check_equal(path.place.back(), static_cast<double>(given.size() - 1));
@@ -174,27 +175,22 @@ TEST_CASE("a straight path becomes one of four control points, with or without a
 
 TEST_CASE("noise of a centimetre on a known curve is taken off") {
   Random random(5);
-  std::vector<Pose> truth, given;
+  std::vector<Pose> given;
   for (int i = 0; i < 4000; ++i) {
     const double s = 0.02 * i;
-    truth.push_back(pose_at(s, 3 * std::sin(s / 12), 0, 0));
-    Pose noisy = truth.back();
-    for (double& value : noisy.translation) value += noise(random, 0.01);
-    given.push_back(noisy);
+    given.push_back(pose_at(s, 3 * std::sin(s / 12), 0, 0));
+    for (double& value : given.back().translation) value += noise(random, 0.01);
   }
   const SmoothPath path = smoothed(given, 0.04, 0, std::nullopt);
   CHECK(path.control_points < 40);
   double worst = 0, mean = 0;
-  for (std::size_t k = 0; k < path.poses.size(); ++k) {
-    double least = 1e9;  // to the true curve
-    for (std::size_t i = 0; i + 1 < truth.size(); ++i) {
-      for (const double part : {0.0, 0.5}) {
-        const Vec3 a = truth[i].position(), b = truth[i + 1].position();
-        least = std::min(least, length(a + part * (b - a) - path.poses[k].position()));
-      }
-    }
-    worst = std::max(worst, least);
-    mean += least / static_cast<double>(path.poses.size());
+  for (const Pose& pose : path.poses) {
+    const auto& [x, y, z] = pose.translation;
+    // To the true curve, by its slope here.
+    const double aside = (y - 3 * std::sin(x / 12)) / std::hypot(1, std::cos(x / 12) / 4);
+    const double away = std::hypot(aside, z);
+    worst = std::max(worst, away);
+    mean += away / static_cast<double>(path.poses.size());
   }
   CHECK(mean < 0.008);
   CHECK(worst < 0.03);
@@ -221,18 +217,10 @@ TEST_CASE("stops take no poses, and turns on the spot keep to the step") {
   check_equal(smoothed({still[0]}, 0.01, 0, std::nullopt).poses.size(), 1);
 }
 
-TEST_CASE("corners of a coarse path are followed") {
-  const std::vector<Pose> given{pose_at(0, 0, 0, 0), pose_at(3, 0, 0, 0), pose_at(3, 3, 0, 0),
-                                pose_at(0, 3, 0, 0)};
-  const SmoothPath path = smoothed(given, 0.02, 0, std::nullopt);
-  CHECK(path.control_points > 40);
-}
-
 TEST_CASE("what cannot be smoothed is refused") {
   std::vector<Pose> given;
   for (int i = 0; i < 50; ++i) given.push_back(pose_at(0.05 * i, 0, 0, 0.01 * i));
-  std::vector<Pose> jump = given, mirrored = given;
-  for (std::size_t i = 30; i < 50; ++i) jump[i].translation[1] += 2;
+  std::vector<Pose> mirrored = given;
   for (double& value : mirrored[7].rotation) value = -value;
   struct Row {
     std::vector<Pose> poses;
@@ -241,47 +229,11 @@ TEST_CASE("what cannot be smoothed is refused") {
     const char* words;
   };
   for (const Row& row :
-       {Row{given, {.within = 0.01}, {}, "expected the model"},
-        Row{given, {.within = 0}, kCar, "above 0"},
+       {Row{given, {.within = 0}, kCar, "above 0"},
         Row{given, {.within = 0.01, .step = -1}, kCar, "above 0"},
         Row{{}, {.within = 0.01}, kCar, "no poses"},
-        Row{jump, {.within = 0.01}, kCar, "from pose 29 to pose 30"},
         Row{given, {.within = 1e-9}, kCar, "no curve of 65,536 control points"},
         Row{mirrored, {.within = 0.01}, Box{{0, 0, 0}, {1e-3, 1e-3, 1e-3}}, "pose 7"}}) {
     check_refused([&] { smooth_trajectory(row.poses, row.asked, row.model); }, row.words);
-  }
-}
-
-TEST_CASE("with its error a search of the smoothed path covers what the given path touches") {
-  Random random(21);
-  for (int scene = 0; scene < 30; ++scene) {
-    const std::vector<Pose> given = random_drive(random);
-    const SmoothPath path = smooth_trajectory(given, {.within = uniform(random, 0.02, 0.1)}, kCar);
-    const std::vector<Vec3> model = points_of(random, kCar);
-    const double radius = 0.05;
-    for (int i = 0; i < 200; ++i) {
-      // A point just within the radius of a model point of the given path, at a pose or between.
-      const std::size_t pose = below(random, given.size() - 1);
-      const double part = i % 2 == 0 ? 0 : uniform(random, 0, 1);
-      const Vec3 a = moved(given[pose], model[i % model.size()]);
-      const Vec3 b = moved(given[pose + 1], model[i % model.size()]);
-      const Vec3 way{noise(random, 1), noise(random, 1), noise(random, 1)};
-      const double out = 0.999 * radius / std::max(length(way), 1e-3);
-      const Vec3 e = a + part * (b - a) + out * way;
-      double at_poses = 1e9, between = 1e9;
-      for (const Vec3& m : model) {
-        for (std::size_t k = 0; k < path.poses.size(); ++k) {
-          const Vec3 from = moved(path.poses[k], m);
-          at_poses = std::min(at_poses, length(from - e));
-          between = std::min(between, at_poses);
-          if (k + 1 == path.poses.size()) continue;
-          const Vec3 d = moved(path.poses[k + 1], m) - from;
-          const double t = dot(d, d) > 0 ? std::clamp(dot(e - from, d) / dot(d, d), 0.0, 1.0) : 0;
-          between = std::min(between, length(e - from - t * d));
-        }
-      }
-      CHECK(at_poses < radius + path.error_at_poses());
-      CHECK(between < radius + path.error_between_poses());
-    }
   }
 }

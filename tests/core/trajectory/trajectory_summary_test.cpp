@@ -50,31 +50,31 @@ TEST_CASE("turns are exact when they are small, and up to a half turn") {
 }
 
 TEST_CASE("a summary names the axes that point up and ahead") {
-  std::vector<Pose> car;
-  std::vector<Pose> camera;  // x right, y down, z ahead
-  const Rotation optical{0, 0, 1, -1, 0, 0, 0, -1, 0};
-  for (int i = 0; i < 200; ++i) {
-    const double a = 0.02 * i;
-    const double x = 30 * std::sin(a);
-    const double y = -30 * std::cos(a);
-    car.push_back(turned_at(about_z(a), {x, y, 0}));
-    camera.push_back(turned_at(about_z(a) * optical, {x, y, 0}));
+  const auto on_a_circle = [](const Rotation& frame) {
+    std::vector<Pose> poses = circle_poses(1.0 / 30, 0.6, 200);
+    for (int i = 0; i < 200; ++i) {
+      poses[i] = turned_at(about_z(0.02 * i) * frame, poses[i].position());
+    }
+    return summarize_trajectory(poses);
+  };
+  struct Row {
+    const char* what;
+    Rotation frame;
+    int up, ahead;
+    bool downwards, backwards;
+  };
+  for (const Row& row :
+       {Row{"a car", about_z(0), 2, 0, false, false},
+        Row{"a camera: x right, y down, z ahead", {0, 0, 1, -1, 0, 0, 0, -1, 0}, 1, 2, true, false},
+        Row{"a mirrored car", {-1, 0, 0, 0, 1, 0, 0, 0, 1}, 2, 0, false, true}}) {
+    const RowName name(row.what);
+    const TrajectorySummary summary = on_a_circle(row.frame);
+    check_equal(summary.up.axis, row.up);
+    check_equal(summary.forward.axis, row.ahead);
+    CHECK(summary.up.negative == row.downwards);
+    CHECK(summary.forward.negative == row.backwards);
+    CHECK(summary.forward.cosine > 0.999);
   }
-  const TrajectorySummary of_car = summarize_trajectory(car);
-  check_equal(of_car.up.axis, 2);
-  CHECK_FALSE(of_car.up.negative);
-  check_equal(of_car.forward.axis, 0);
-  CHECK_FALSE(of_car.forward.negative);
-  CHECK(of_car.forward.cosine > 0.999);
-  const TrajectorySummary of_camera = summarize_trajectory(camera);
-  check_equal(of_camera.up.axis, 1);
-  CHECK(of_camera.up.negative);
-  check_equal(of_camera.forward.axis, 2);
-  for (Pose& pose : car) {
-    pose.rotation[0] *= -1;
-    pose.rotation[3] *= -1;
-  }
-  CHECK(summarize_trajectory(car).forward.negative);
 }
 
 TEST_CASE("skew is the distance from a rotation") {

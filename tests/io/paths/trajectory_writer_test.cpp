@@ -53,11 +53,3 @@ TEST_CASE("what puts a path in doubt is kept by the paths that are made of it") 
     check_equal(remarks[0].text, "a.csv: tilts, much");
   }
 }
-
-TEST_CASE("a pose is written as a row-major 4 x 4 matrix") {
-  const ScratchFolder folder;
-  NoProgress progress;
-  write_trajectory(std::vector<Pose>{{{1, 2, 3, 4, 5, 6, 7, 8, 9}, {0.1, 11, 12}}},
-                   File::create(folder / "path.txt"), progress);
-  check_equal(bytes_of(folder / "path.txt"), "1 2 3 0.1 4 5 6 11 7 8 9 12 0 0 0 1\n");
-}

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "core/trajectory/paths.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -52,44 +53,6 @@ Vertices winding(unsigned seed, double most_turn, std::size_t count = 20) {
 }
 
 }  // namespace
-
-TEST_CASE("a straight line is straight, with any number of vertices") {
-  for (const Vertices& vertices :
-       {Vertices{{1, 2}, {4, 6}}, Vertices{{1, 2}, {1.6, 2.8}, {2.2, 3.6}, {4, 6}}}) {
-    for (const LinePlan& plan : {LinePlan::through(vertices), LinePlan::rounded(vertices, 3)}) {
-      CHECK(plan.length() == Approx(5).epsilon(1e-14));
-      check_equal(plan.station_of(0), 0);
-      CHECK(plan.station_of(vertices.size() - 1) == Approx(5).epsilon(1e-14));
-      for (const double s : {0.0, 0.3, 1.0, 2.5, 4.9, 5.0}) {
-        const PlanPlace place = plan.at(s);
-        CHECK(std::abs(place.at - PlanPoint(1 + 0.6 * s, 2 + 0.8 * s)) < 1e-13);
-        CHECK(std::abs(place.heading - std::atan2(4, 3)) < 1e-13);
-      }
-    }
-  }
-}
-
-TEST_CASE("an arc at a right angle has the places, headings and length of a quarter circle") {
-  for (const double side : {1.0, -1.0}) {
-    const Vertices vertices{{0, 0}, {10, 0}, {10, 10 * side}};
-    const LinePlan plan = LinePlan::rounded(vertices, 2);
-    CHECK(plan.length() == Approx(16 + kPi).epsilon(1e-15));
-    check_equal(plan.arc_at(0), 0);
-    CHECK(plan.arc_at(1) == Approx(kPi).epsilon(1e-15));
-    CHECK(plan.station_of(1) == Approx(8 + kPi / 2).epsilon(1e-15));
-    CHECK(plan.station_of(2) == plan.length());
-    for (const double turned : {0.0, 0.2, 0.7, 1.0}) {
-      const double angle = turned * kPi / 2;
-      const PlanPlace place = plan.at(8 + 2 * angle);
-      CHECK(std::abs(place.at -
-                     PlanPoint(8 + 2 * std::sin(angle), side * (2 - 2 * std::cos(angle)))) < 1e-14);
-      CHECK(std::abs(between(place.heading, side * angle)) < 1e-14);
-    }
-    CHECK(std::abs(plan.at(plan.length()).at - vertices.back()) < 1e-13);
-    CHECK(std::abs(plan.at(5).at - PlanPoint(5, 0)) < 1e-14);
-    CHECK(std::abs(plan.at(9 + kPi).at - PlanPoint(10, 3 * side)) < 1e-14);
-  }
-}
 
 TEST_CASE("arcs touch both legs and each other, and are as long as their angles say") {
   const Vertices vertices = winding(7, 1.6);
@@ -257,11 +220,8 @@ TEST_CASE("a pose stands on the line, with its heading, climb and roll") {
   const Vertices vertices{{0, 0}, {30, 40}};
   LinePath path{.plan = LinePlan::through(vertices), .height = 2.5};
   Pose pose = path.pose_at(10);
-  CHECK(std::abs(pose.translation[0] - 6) < 1e-13);
-  CHECK(std::abs(pose.translation[1] - 8) < 1e-13);
-  check_equal(pose.translation[2], 2.5);
-  const double level[9] = {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1};
-  for (int k = 0; k < 9; ++k) CHECK(std::abs(pose.rotation[k] - level[k]) < 1e-14);
+  check_near(pose.position(), {6, 8, 2.5}, 1e-13);
+  check_near(pose.rotation, {0.6, -0.8, 0, 0.8, 0.6, 0, 0, 0, 1}, 1e-14);
   path.height.emplace<HeightCurve>(std::vector<double>{0, 50}, std::vector<double>{0, 5});
   path.cant.emplace(std::vector<CantPoint>{{0, 0.3}});
   pose = path.pose_at(10);
@@ -269,9 +229,7 @@ TEST_CASE("a pose stands on the line, with its heading, climb and roll") {
   CHECK(pose.rotation[6] == Approx(0.1 / std::hypot(1, 0.1)));
   // The left rail is 0.3 m higher than the right one, 1.5 m away.
   CHECK(pose.rotation[7] == Approx(0.2 / std::hypot(1, 0.1)).margin(1e-3));
-  const Vec3 x{pose.rotation[0], pose.rotation[3], pose.rotation[6]};
-  const Vec3 y{pose.rotation[1], pose.rotation[4], pose.rotation[7]};
-  const Vec3 z{pose.rotation[2], pose.rotation[5], pose.rotation[8]};
-  CHECK(std::abs(dot(x, y)) < 1e-14);
-  CHECK(length(cross(x, y) - z) < 1e-14);
+  const Vec3 x = axis_of(pose, 0), y = axis_of(pose, 1);
+  check_near(dot(x, y), 0, 1e-14);
+  check_near(cross(x, y), axis_of(pose, 2), 1e-14);
 }

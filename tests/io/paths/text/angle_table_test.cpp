@@ -6,8 +6,6 @@
 #include "support/attitudes.hpp"
 #include "support/catch.hpp"
 #include "support/made_path.hpp"
-#include "support/reader_fixture.hpp"
-#include "support/text_rows.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -16,30 +14,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-MadePath made_of_table(const std::string& text, const TrajectoryOptions& options = {}) {
-  const ScratchFolder scratch;
-  MadePath made;
-  made.poses = read_trajectory(scratch.write("path.csv", text), options, &made.remarks);
-  return made;
-}
-
 Pose pose_of_table(const std::string& text, const TrajectoryOptions& options = {}) {
-  return made_of_table(text, options).poses.at(0);
-}
-
-/// Rows of a table's text and words of the refusal, all with one remedy.
-void check_tables_refused(std::string_view table, const TrajectoryOptions& options = {},
-                          Remedy remedy = Remedy::kNone) {
-  for (const auto& row : text_rows(table)) {
-    const RowName name(row[0]);
-    try {
-      made_of_table(row[0], options);
-      fail_check("nothing was refused");
-    } catch (const InputError& error) {
-      check_says(error.what(), row[1]);
-      CHECK(error.remedy() == remedy);
-    }
-  }
+  return read_path(text, options).poses.at(0);
 }
 
 void check_turn(const Pose& pose, const Rotation& expected) {
@@ -86,13 +62,13 @@ TEST_CASE("each angle turns the way that its convention says") {
 }
 
 TEST_CASE("angles whose unit or frame is not sure are refused") {
-  check_tables_refused(R"(
+  check_paths_refused(R"(
     x,y,z,roll,pitch,heading\n1,2,3,0,0,1.5\n             | degrees or radians
     x,y,z,roll,pitch,heading\n1,2,3,0,0,60\n              | up to 60
     x,y,z,roll_deg,pitch_deg,yaw_deg\n1,2,3,0,0,0\n       | ned ... enu
   )",
-                       {}, Remedy::kDeclareAngles);
-  check_tables_refused(R"(
+                      {}, Remedy::kDeclareAngles);
+  check_paths_refused(R"(
     x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n  | look like degrees
     x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n   | degrees and in radians
     x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n           | all or none
@@ -104,17 +80,18 @@ TEST_CASE("angles whose unit or frame is not sure are refused") {
     lat,lon,height\n                                      | without angles
     x,y,z,roll,pitch\n                                    | no rotation
     lat,lon,height,qx,qy,qz,qw\n                          | roll, pitch and heading
-  )");
-  check_tables_refused(R"(
+  )",
+                      {}, Remedy::kNone);
+  check_paths_refused(R"(
     x,y,z,roll,pitch,heading\n1,2,3,0,0,359\n             | look like degrees
     x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n   | declared to be radians
   )",
-                       {.angle_unit = AngleUnit::kRadians});
-  check_tables_refused(R"(x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n | column called yaw)",
-                       {.angle_frame = AngleFrame::kEnu});
-  CHECK_THROWS_AS(made_of_table("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
+                      {.angle_unit = AngleUnit::kRadians}, Remedy::kNone);
+  check_paths_refused(R"(x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,0,0\n | column called yaw)",
+                      {.angle_frame = AngleFrame::kEnu}, Remedy::kNone);
+  CHECK_THROWS_AS(read_path("1 0 0 0 0 1 0 0 0 0 1 0\n", {.angle_unit = AngleUnit::kDegrees}),
                   UsageError);
-  const MadePath degrees = made_of_table("x,y,z,roll,pitch,heading\n1,2,3,0,0,359\n");
+  const MadePath degrees = read_path("x,y,z,roll,pitch,heading\n1,2,3,0,0,359\n");
   CHECK(degrees.poses.at(0).rotation[3] > 0.99);
   check_says(degrees.codes(), "angles-in-degrees");
   // A roll of 7 is no radians.
@@ -142,13 +119,13 @@ TEST_CASE("latitude and longitude in a table") {
   for (int k = 0; k < 9; ++k) check_near(a.rotation[k], b.rotation[k], 1e-12);
   const std::string_view unnamed =
       R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | coordinate reference system)";
-  check_tables_refused(unnamed, {}, Remedy::kNameCrs);
-  check_tables_refused(R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n1,0.5,9,0,0,90\n | lat_deg)",
-                       kUtm32, Remedy::kDeclareAngles);
-  check_tables_refused(R"(
+  check_paths_refused(unnamed, {}, Remedy::kNameCrs);
+  check_paths_refused(R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n1,0.5,9,0,0,90\n | lat_deg)",
+                      kUtm32, Remedy::kDeclareAngles);
+  check_paths_refused(R"(
     lat,lon,z,roll_deg,pitch_deg,heading_deg\n98,9,12.5,0,0,90\n         | within 90 degrees
     lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | look like degrees
   )",
-                       kUtm32);
-  CHECK_THROWS_AS(made_of_table(kHead + "1,2,3,0,0,0\n", kUtm32), UsageError);
+                      kUtm32, Remedy::kNone);
+  CHECK_THROWS_AS(read_path(kHead + "1,2,3,0,0,0\n", kUtm32), UsageError);
 }
