@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "findings/searched_scene.hpp"
 #include "io/paths/content_hash.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
-#include "support/scenes.hpp"
 
 namespace clearway::test {
 
@@ -96,14 +97,6 @@ struct Found {
     clearances.xyz.resize(clearances.source.size(), rows().xyz[0]);
   }
 };
-
-inline std::array<std::int32_t, 3> millimetres(const Vec3& p) {
-  std::array<std::int32_t, 3> out{};
-  for (int k = 0; k < 3; ++k) {
-    out[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
-  }
-  return out;
-}
 
 /// One point at a place that is no multiple of the steps, first touched at one pose.
 inline Found one_point(const Vec3& at, const Pose& pose) {

@@ -242,28 +242,10 @@ TEST_CASE("a result without colliding points has no conflicts") {
   check_equal(out.path_length, 1);
 }
 
-TEST_CASE("what cannot be grouped is refused") {
+TEST_CASE("options that make no sense are refused") {
   const ScratchFolder folder;
   const Found found = rail(3);
   const Result result = found.write(folder);
-  auto poses = found.poses;
-  poses[1].translation[2] = 1e-9;
-  check_refused([&] { return find_conflicts(result, poses); }, "another trajectory");
-  poses.pop_back();
-  CHECK_THROWS_AS(find_conflicts(result, poses), InputError);
-
-  ResultHeader header = found.header();
-  header.first_pose = false;
-  Collisions rows = found.rows();
-  rows.first_pose.clear();
-  write_result(folder / "set.h5", header, rows);
-  try {
-    find_conflicts(Result(folder / "set.h5"), found.poses);
-    FAIL("not refused");
-  } catch (const UsageError& error) {
-    CHECK(error.remedy() == Remedy::kAskForFirstPose);
-  }
-
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   for (const ConflictOptions& options :
        {ConflictOptions{.up = Axis::kMinusX}, ConflictOptions{.split = -1},
