@@ -159,16 +159,24 @@ inline std::size_t check_groups(const Found& found, double gap, int threads = 2)
   REQUIRE(conflict_of.size() == group.size());
   std::map<std::size_t, std::uint32_t> id_of;
   std::map<std::uint32_t, std::uint64_t> points;
+  std::map<std::uint32_t, Vec3> sum;
+  const std::vector<Vec3> xyz = found.rows().xyz;
   for (std::size_t i = 0; i < group.size(); ++i) {
     const auto known = id_of.emplace(group[i], conflict_of[i]).first;
     if (known->second != conflict_of[i]) FAIL("row " << i << " is in another group");
     ++points[conflict_of[i]];
+    sum[conflict_of[i]] = sum[conflict_of[i]] + xyz[i];
   }
   // There are as many numbers as groups, so that no two groups share a number.
   REQUIRE(points.size() == id_of.size());
   REQUIRE(conflicts.listed.size() == id_of.size());
   CHECK(conflicts.groups == id_of.size());
-  for (const Conflict& conflict : conflicts.listed) CHECK(conflict.points == points[conflict.id]);
+  for (const auto& [row, id] : id_of) {
+    const Conflict& conflict = conflicts.listed.at(id - 1);
+    check_equal(conflict.points, points[id]);
+    check_equal(conflict.source, row);
+    check_near(conflict.centroid, 1.0 / static_cast<double>(points[id]) * sum[id], 1e-5);
+  }
   return id_of.size();
 }
 

@@ -212,29 +212,6 @@ TEST_CASE("conflicts with solids tell depth and points inside") {
   CHECK_FALSE((without.depth || without.points_inside));
 }
 
-TEST_CASE("threads and the order of work change nothing") {
-  Random random(5);
-  Found found;
-  for (std::uint32_t i = 0; i < 20'000; ++i) {
-    const auto at = [&] { return static_cast<std::int32_t>(below(random, 20'000)); };
-    found.quanta.push_back({at(), at(), at() / 10});
-    found.first_pose.push_back(static_cast<std::uint32_t>(below(random, 2)));
-  }
-  ConflictOptions options{.gap = 0.35, .min_points = 1};
-  options.threads = 1;
-  std::vector<std::uint32_t> conflict_of, again;
-  const Conflicts one = found.conflicts(options, &conflict_of);
-  CHECK(one.listed.size() > 100);
-  options.threads = 5;
-  const Conflicts other = found.conflicts(options, &again);
-  CHECK(again == conflict_of);
-  REQUIRE(other.listed.size() == one.listed.size());
-  for (std::size_t i = 0; i < one.listed.size(); ++i) {
-    CHECK(other.listed[i].centroid == one.listed[i].centroid);
-    CHECK(other.listed[i].source == one.listed[i].source);
-  }
-}
-
 TEST_CASE("a result without colliding points has no conflicts") {
   const Conflicts out = Found().conflicts();
   CHECK(out.listed.empty());
