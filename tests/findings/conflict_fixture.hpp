@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "clearway/conflicts.hpp"
+#include "findings/searched_scene.hpp"
 #include "io/paths/content_hash.hpp"
 #include "support/catch.hpp"
+#include "support/compare.hpp"
 #include "support/result_fixture.hpp"
-#include "support/scenes.hpp"
 
 namespace clearway::test {
 
@@ -97,14 +98,6 @@ struct Found {
   }
 };
 
-inline std::array<std::int32_t, 3> millimetres(const Vec3& p) {
-  std::array<std::int32_t, 3> out{};
-  for (int k = 0; k < 3; ++k) {
-    out[static_cast<std::size_t>(k)] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
-  }
-  return out;
-}
-
 /// One point at a place that is no multiple of the steps, first touched at one pose.
 inline Found one_point(const Vec3& at, const Pose& pose) {
   Found found{.quanta = {{0, 0, 0}}, .poses = {pose}};
@@ -166,16 +159,24 @@ inline std::size_t check_groups(const Found& found, double gap, int threads = 2)
   REQUIRE(conflict_of.size() == group.size());
   std::map<std::size_t, std::uint32_t> id_of;
   std::map<std::uint32_t, std::uint64_t> points;
+  std::map<std::uint32_t, Vec3> sum;
+  const std::vector<Vec3> xyz = found.rows().xyz;
   for (std::size_t i = 0; i < group.size(); ++i) {
     const auto known = id_of.emplace(group[i], conflict_of[i]).first;
     if (known->second != conflict_of[i]) FAIL("row " << i << " is in another group");
     ++points[conflict_of[i]];
+    sum[conflict_of[i]] = sum[conflict_of[i]] + xyz[i];
   }
   // There are as many numbers as groups, so that no two groups share a number.
   REQUIRE(points.size() == id_of.size());
   REQUIRE(conflicts.listed.size() == id_of.size());
   CHECK(conflicts.groups == id_of.size());
-  for (const Conflict& conflict : conflicts.listed) CHECK(conflict.points == points[conflict.id]);
+  for (const auto& [row, id] : id_of) {
+    const Conflict& conflict = conflicts.listed.at(id - 1);
+    check_equal(conflict.points, points[id]);
+    check_equal(conflict.source, row);
+    check_near(conflict.centroid, 1.0 / static_cast<double>(points[id]) * sum[id], 1e-5);
+  }
   return id_of.size();
 }
 

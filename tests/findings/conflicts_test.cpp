@@ -212,29 +212,6 @@ TEST_CASE("conflicts with solids tell depth and points inside") {
   CHECK_FALSE((without.depth || without.points_inside));
 }
 
-TEST_CASE("threads and the order of work change nothing") {
-  Random random(5);
-  Found found;
-  for (std::uint32_t i = 0; i < 20'000; ++i) {
-    const auto at = [&] { return static_cast<std::int32_t>(below(random, 20'000)); };
-    found.quanta.push_back({at(), at(), at() / 10});
-    found.first_pose.push_back(static_cast<std::uint32_t>(below(random, 2)));
-  }
-  ConflictOptions options{.gap = 0.35, .min_points = 1};
-  options.threads = 1;
-  std::vector<std::uint32_t> conflict_of, again;
-  const Conflicts one = found.conflicts(options, &conflict_of);
-  CHECK(one.listed.size() > 100);
-  options.threads = 5;
-  const Conflicts other = found.conflicts(options, &again);
-  CHECK(again == conflict_of);
-  REQUIRE(other.listed.size() == one.listed.size());
-  for (std::size_t i = 0; i < one.listed.size(); ++i) {
-    CHECK(other.listed[i].centroid == one.listed[i].centroid);
-    CHECK(other.listed[i].source == one.listed[i].source);
-  }
-}
-
 TEST_CASE("a result without colliding points has no conflicts") {
   const Conflicts out = Found().conflicts();
   CHECK(out.listed.empty());
@@ -242,28 +219,10 @@ TEST_CASE("a result without colliding points has no conflicts") {
   check_equal(out.path_length, 1);
 }
 
-TEST_CASE("what cannot be grouped is refused") {
+TEST_CASE("options that make no sense are refused") {
   const ScratchFolder folder;
   const Found found = rail(3);
   const Result result = found.write(folder);
-  auto poses = found.poses;
-  poses[1].translation[2] = 1e-9;
-  check_refused([&] { return find_conflicts(result, poses); }, "another trajectory");
-  poses.pop_back();
-  CHECK_THROWS_AS(find_conflicts(result, poses), InputError);
-
-  ResultHeader header = found.header();
-  header.first_pose = false;
-  Collisions rows = found.rows();
-  rows.first_pose.clear();
-  write_result(folder / "set.h5", header, rows);
-  try {
-    find_conflicts(Result(folder / "set.h5"), found.poses);
-    FAIL("not refused");
-  } catch (const UsageError& error) {
-    CHECK(error.remedy() == Remedy::kAskForFirstPose);
-  }
-
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   for (const ConflictOptions& options :
        {ConflictOptions{.up = Axis::kMinusX}, ConflictOptions{.split = -1},

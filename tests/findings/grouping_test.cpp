@@ -38,7 +38,7 @@ Quanta random_quanta(Random& random, std::size_t count, std::int32_t extent) {
 
 }  // namespace
 
-TEST_CASE("random points are grouped as all pairs are, with axes of any scales") {
+TEST_CASE("random points are grouped as all pairs are, with any threads and scales") {
   Random random(1);
   std::size_t groups = 0, scenes = 0;
   for (const std::int32_t extent : {30, 400, 5000, 1'000'000}) {
@@ -337,8 +337,7 @@ TEST_CASE("the spacing of many points is that of every place to its nearest, how
       from += 200'000;
     }
     Random random(1);
-    for (std::size_t i = points.size(); i > 1; --i)
-      std::swap(points[i - 1], points[below(random, i)]);
+    std::ranges::shuffle(points, random);
     REQUIRE(points.size() > 2 * kSpacingSample);
     NoProgress progress;
     const std::optional<double> spacing = colliding_spacing(points, millimetres, progress);

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -22,17 +20,15 @@ namespace clearway::test {
 
 /// The points of a scan, with what LAS says of them.
 struct RoadScan {
-  struct Point {
-    Vec3 xyz;
-    std::uint8_t point_class = 1;
-    bool withheld = false;
-  };
-  std::vector<Point> points;
+  std::vector<Quantum> points;
+  std::vector<std::uint8_t> classes, flags;
   std::uint16_t year = 0;  ///< year in the file's header; 0: none
 
   RoadScan& add(const std::vector<Vec3>& more, std::uint8_t point_class = 1,
                 bool withheld = false) {
-    for (const Vec3& p : more) points.push_back({p, point_class, withheld});
+    for (const Vec3& p : more) points.push_back(millimetres(p));
+    classes.resize(points.size(), point_class);
+    flags.resize(points.size(), withheld ? 4 : 0);
     return *this;
   }
 
@@ -42,14 +38,9 @@ struct RoadScan {
     las.format = 6;
     las.scale = {0.001, 0.001, 0.001};
     las.offset = {0, 0, 0};
-    las.points.clear();
-    for (const Point& p : points) {
-      Quantum q;
-      for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(std::lround(p.xyz[k] * 1000));
-      las.points.push_back(q);
-      las.bytes_of_class.push_back(p.point_class);
-      las.bytes_of_flags.push_back(static_cast<std::uint8_t>(p.withheld ? 4 : 0));
-    }
+    las.points = points;
+    las.bytes_of_class = classes;
+    las.bytes_of_flags = flags;
     std::string bytes = las.build();
     LasBytes::put(bytes, 90, static_cast<std::uint16_t>(year > 0 ? 100 : 0));
     LasBytes::put(bytes, 92, year);
@@ -105,6 +96,8 @@ inline void write_text(const std::filesystem::path& path, const std::string& tex
 struct LedgerScene {
   std::filesystem::path table() const { return folder / "L.csv"; }
   std::filesystem::path places() const { return folder / "L.places.h5"; }
+  /// Where scanners stood in all scans; there are none as long as the file is not there.
+  std::filesystem::path origins() const { return folder / "origins.csv"; }
   std::string text() const { return text_of_file(table()); }
   void write(const std::string& text) const { write_text(table(), text); }
 
@@ -113,12 +106,7 @@ struct LedgerScene {
     const std::string name = "scan" + std::to_string(epoch_++);
     scan.write(folder / (name + ".las"));
     ConvertOptions conversion{.cell_points = 256, .threads = 2};
-    if (origin_) {
-      conversion.origins = folder / "origins.csv";
-      write_text(conversion.origins, "first,x,y,z\n0," + std::to_string(origin_->x) + "," +
-                                         std::to_string(origin_->y) + "," +
-                                         std::to_string(origin_->z) + "\n");
-    }
+    if (std::filesystem::exists(origins())) conversion.origins = origins();
     convert({folder / (name + ".las")}, folder / (name + ".h5"), conversion);
     const Store store(folder / (name + ".h5"));
     const auto output = folder / (name + ".result.h5");
@@ -137,9 +125,6 @@ struct LedgerScene {
                          .store = asked.knows_store ? &store : nullptr,
                          .threads = 2});
   }
-
-  /// The place of the scanner of all scans from here on.
-  void set_origin(const Vec3& origin) { origin_ = origin; }
 
   /// Sets the cells of a column in all rows, or in one.
   void set(const std::string& column, const std::string& value, int row = -1) const {
@@ -164,7 +149,6 @@ struct LedgerScene {
 
  private:
   int epoch_ = 0;
-  std::optional<Vec3> origin_;
 };
 
 /// The counts that are not 0, as in "open 1, accepted 2".

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -7,11 +8,25 @@
 
 #include "clearway/clearway.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "core/query/search_result.hpp"
+#include "support/engines/brute_force.hpp"
 #include "support/scenes.hpp"
 #include "support/solid_scene.hpp"
 #include "support/store_fixture.hpp"
 
 namespace clearway::test {
+
+inline Quantum millimetres(const Vec3& p) {
+  Quantum out{};
+  for (int k = 0; k < 3; ++k) out[k] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
+  return out;
+}
+
+/// Whether any of the points collides, by trying all.
+inline bool collide(const std::vector<Vec3>& points, const Query& query) {
+  return std::ranges::any_of(brute_force_first_poses(points, query),
+                             [](std::uint32_t first) { return first != kNoPose; });
+}
 
 /// Points in steps of a millimetre, a query, and the result of its search with first poses.
 struct SearchedScene {
@@ -20,8 +35,7 @@ struct SearchedScene {
   SearchedScene(const std::vector<Vec3>& places, Query asked) : query(std::move(asked)) {
     std::vector<Quantum> quanta;
     for (const Vec3& p : places) {
-      Quantum& q = quanta.emplace_back();
-      for (int k = 0; k < 3; ++k) q[k] = static_cast<std::int32_t>(std::lround(p[k] * 1000));
+      const Quantum& q = quanta.emplace_back(millimetres(p));
       points.push_back(position(kSteps, q[0], q[1], q[2]));
     }
     write_las(folder / "scan.las", quanta, kSteps);

@@ -37,6 +37,21 @@ inline std::vector<std::size_t> rows_of(const std::vector<Pose>& poses, double e
   return out;
 }
 
+/// The second motion, and then the first.
+inline Pose times(const Pose& a, const Pose& b) {
+  Pose out{};
+  for (int k = 0; k < 3; ++k) {
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) {
+        out.rotation[3 * k + j] += a.rotation[3 * k + i] * b.rotation[3 * i + j];
+      }
+      out.translation[k] += a.rotation[3 * k + j] * b.translation[j];
+    }
+    out.translation[k] += a.translation[k];
+  }
+  return out;
+}
+
 /// The place of a point in the frame of a pose whose rotation is orthonormal.
 inline Vec3 seen_from(const Vec3& p, const Pose& pose) {
   const Vec3 d{p.x - pose.translation[0], p.y - pose.translation[1], p.z - pose.translation[2]};
