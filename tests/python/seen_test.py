@@ -158,7 +158,7 @@ class SeenSpace(SceneTest):
                 for (k, j), is_free in np.ndenumerate(free):
                     self.assertEqual(is_free, not {(k + K[0], j + J[0])} & (first.keys() | known.keys()))
             numbers += len(blocked), len(unknown), free.sum()
-        self.assertTrue((numbers > (100, 500, 20)).all(), numbers)
+        self.assertTrue((numbers > (200, 300, 50)).all(), numbers)
 
 
 if __name__ == "__main__":
