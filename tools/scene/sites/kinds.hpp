@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "scene/scene.hpp"
+#include "scene/vehicles/vehicles.hpp"
 
 /// One function makes each kind of scene; make_scene of scene.hpp chooses.
 namespace clearway::scene {
@@ -20,6 +24,36 @@ enum Stream : std::uint64_t { kModelStream = 10, kLayoutStream = 11, kShapeStrea
 inline double along(double begin, double end, std::uint64_t number, std::uint64_t count) {
   if (count < 2) return (begin + end) / 2;
   return begin + (end - begin) * (static_cast<double>(number) / static_cast<double>(count - 1));
+}
+
+/// A scene whose world is to be furnished.
+inline std::unique_ptr<Scene> empty_scene(Kind kind, const Sizes& sizes, Path path,
+                                          std::vector<Room> rooms) {
+  return std::make_unique<Scene>(
+      Scene{kind, sizes, std::move(path), World(std::move(rooms)), {}, {}, {}, {}});
+}
+
+/// Finishes a scene whose world and plan are there. The model is the mesh, sampled with the noise
+/// and the density of sample_mesh.
+inline std::unique_ptr<const Scene> with_vehicle(
+    std::unique_ptr<Scene> scene, std::uint64_t seed, const Mesh& mesh, double noise,
+    Pose (*pose)(const Path& path, std::uint64_t number, std::uint64_t count),
+    double (*density)(const Vec3&) = [](const Vec3&) { return 1.0; }) {
+  scene->world.finish(scene->path, scene->plan.reach);
+  scene->model =
+      sample_mesh(mesh, scene->sizes.model_points, noise, density, Random(seed, kModelStream));
+  scene->pose = [&path = scene->path, count = scene->sizes.poses, pose](std::uint64_t number) {
+    return pose(path, number, count);
+  };
+  return scene;
+}
+
+/// 1 or -1, for the left or the right of the path.
+inline double random_side(Dice& dice) { return dice.chance(0.5) ? 1 : -1; }
+
+/// How far sweep `number` is through all sweeps, 0 to 1.
+inline double share_of(std::uint64_t number, std::uint64_t sweeps) {
+  return (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
 }
 
 /// A prism of four sides that stands along the path, or, for a pole, a round one.
@@ -51,9 +85,8 @@ ScanPlan crossed_planes(std::uint64_t points, double height, double reach, Place
                 .noise = 0.004,
                 .open_reach = reach};
   plan.sweep = [place, height, sweeps = plan.sweeps()](std::uint64_t number) {
-    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
     const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
-    return Sweep{{place(share), 0, height}, sine_cosine(azimuth), 0, 2 * kPi};
+    return Sweep{{place(share_of(number, sweeps)), 0, height}, sine_cosine(azimuth), 0, 2 * kPi};
   };
   return plan;
 }
