@@ -21,19 +21,14 @@ with h5py.File(sys.argv[1]) as file:
     assert np.array_equal(file["collisions/source"][:], result.source())
     other = h5py.File(sys.argv[1])  # and the other way round
     assert np.array_equal(other["collisions/xyz"][:], result.xyz())
-assert len(result.first_pose()) == len(result)
 del result
 gc.collect()
 assert np.array_equal(other["collisions/source"][:], clearway.Result(sys.argv[1]).source())
-try:
-    h5py.File(sys.argv[2])
-except OSError:
-    pass
-try:
-    clearway.Result(sys.argv[2])
-except clearway.InputError:
-    pass
-print("read", len(other["collisions/source"]))
+for opened, kind in ((h5py.File, OSError), (clearway.Result, clearway.InputError)):
+    try:
+        opened(sys.argv[2])
+    except kind:
+        print("bad")
 """
 
 
@@ -46,13 +41,10 @@ class BesideH5py(SceneTest):
 
     def test_both_orders_of_import(self):
         for first, second in (("h5py", "clearway"), ("clearway", "h5py")):
-            with self.subTest(first=first):
-                script = READ_WITH_BOTH.format(first=first, second=second)
-                done = subprocess.run(
-                    [sys.executable, "-c", script, self.result, self.folder / "bad.h5"],
-                    capture_output=True, text=True, check=False)
-                size = clearway.Result(self.result).size()
-                self.assertEqual((done.stdout, done.stderr), (f"read {size}\n", ""))
+            script = READ_WITH_BOTH.format(first=first, second=second)
+            done = subprocess.run([sys.executable, "-c", script, self.result, self.folder / "bad.h5"],
+                                  capture_output=True, text=True, check=False)
+            self.assertEqual((done.stdout, done.stderr), ("bad\nbad\n", ""))
 
     def test_both_at_the_same_time(self):
         import h5py
