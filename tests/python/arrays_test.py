@@ -4,6 +4,7 @@
 import inspect
 import os
 import unittest
+from pathlib import Path
 
 import clearway
 import numpy as np
@@ -104,36 +105,20 @@ class Arguments(SceneTest):
         self.refused((kind, name, call, args, {name: value})
                      for name, each in values.items() for value in each)
 
-    def test_numbers_out_of_range(self):
+    def test_numbers_of_a_query_out_of_range(self):
         nan, inf = np.nan, np.inf
-        scan, store = self.folder / "scan.xyz", self.folder / "again.h5"
         radii = (-1, 0, nan, inf, -inf)
         self.of(clearway.UsageError, clearway.Query, (self.model, self.poses), {
             "radius": radii, "clearance": (-0.1, nan, inf), "profile": (-0.1, nan, inf),
             "floor": (nan,), "error_pose": (-0.1,), "ignore_classes": ([256],)})
-        self.of(clearway.UsageError, self.search, (), {
-            "threads": (-1, 2**40), "memory_bytes": (-1,), "device_memory_bytes": (-1,),
-            "journal_interval_seconds": (-1, nan, inf), "shard": ((-1, 2), (1, 2, 3)),
-            "gpus": ([-1],), "engine": ("fast",), "device": ("tpu",)})
-        self.of(clearway.UsageError, clearway.convert, (scan, store), {
-            "scale": (0, nan), "regular_size": (-1,), "threads": (-1,), "cell_points": (-1,),
-            "memory_bytes": (-1,), "unit_z": (-1,)})
         self.refused([
             *((clearway.UsageError, "radius: expected", setattr, (self.query(), "radius", radius), {})
               for radius in radii),
-            (clearway.UsageError, "unit", clearway.read_model_points, (scan,), {"unit": -1}),
-            (clearway.UsageError, "environment_unit", clearway.read_trajectory, (scan,),
-             {"environment_unit": 0}),
-            (clearway.UsageError, r"lever_arm\[1\]", clearway.read_trajectory, (scan,),
-             {"lever_arm": (0, nan, 0)}),
-            (clearway.UsageError, "pivots", clearway.follow, ("a", self.model, self.poses),
-             {"pivots": (1, 2, 3)}),
             (clearway.UsageError, "^radius: the query has none", self.search, (),
              {"query": clearway.Query(self.model, self.poses)}),
             (clearway.UsageError, "have no classes", self.search, (),
              {"query": self.query(ignore_classes=[2])}),
             (clearway.InputError, "hi: point 0", clearway.Box, ((0, 0, 0), (1, 1, inf)), {})])
-        self.assertFalse(store.exists())
 
     def test_wrong_types(self):
         store, query = clearway.Store(self.folder / "site.h5"), self.query()
@@ -280,6 +265,28 @@ class Defaults(SceneTest):
                     outcome = self.outcome(call, given, **named)
                     self.assertNotIn("Error(", outcome[0])
                     self.assertNotEqual(outcome, usual)
+
+    def test_a_value_out_of_range_is_named(self):
+        nan, inf = np.nan, np.inf
+        out_of_range = {
+            "search": {"threads": (-1, 2**40), "memory_bytes": (-1,), "device_memory_bytes": (-1,),
+                       "journal_interval_seconds": (-1, nan, inf), "shard": ((-1, 2), (1, 2, 3)),
+                       "gpus": ([-1],), "engine": ("fast",), "device": ("tpu",)},
+            "convert": {"scale": (0, nan), "regular_size": (-1,), "threads": (-1,), "cell_points": (-1,),
+                        "memory_bytes": (-1,), "unit_z": (-1,)},
+            "read_model_points": {"unit": (-1,)}, "follow": {"pivots": ((1, 2, 3),)},
+            "read_trajectory": {"environment_unit": (0,), "lever_arm": ((0, nan, 0),), "format": ("tun",)},
+            "read_alignment": {"step": (0,), "cant": ("inner",)}, "read_line": {"corner_radius": (0,)},
+            "find_conflicts": {"worse_by": (-1,)}, "find_shifts": {"lateral": ((1,), (0, "far")), "step": (0,)},
+            "find_section": {"window": ((1, 2, 3),), "cell": (-1,), "bin": (nan,), "pivots": ((1,),),
+                             "ignore_classes": ([300],), "threads": (-1,)}}
+        calls = self.calls()
+        for name, arguments in out_of_range.items():
+            for parameter, value in ((p, value) for p, values in arguments.items() for value in values):
+                with self.subTest(call=name, argument=parameter, value=value):
+                    with self.assertRaisesRegex((clearway.UsageError, TypeError), rf"^{parameter}\b"):
+                        getattr(clearway, name)(*calls[name], **{parameter: value})
+        self.assertFalse(Path("new").exists())
 
     def test_an_argument_of_a_wrong_type_is_named(self):
         for name, given in self.calls().items():

@@ -76,7 +76,7 @@ class LedgerTest(SceneTest):
     def test_refuses(self):
         no_ledger = {"ledger": None, "store": None}
         for words, options in (("^ledger: ", {**no_ledger, "update": True}), ("^ledger: ", {**no_ledger, "worse_by": 0.1}),
-                               ("^worse_by: ", {"worse_by": -1}), ("soon", {"update": True, "date": "soon"})):
+                               ("soon", {"update": True, "date": "soon"})):
             with self.assertRaisesRegex(clearway.UsageError, words):
                 self.found("after", **options)
         other = self.found("before", ledger=self.folder / "other.csv", update=True).ledger

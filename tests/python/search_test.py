@@ -362,8 +362,6 @@ class Inputs(SceneTest):
         self.assertEqual({(m.severity, m.code) for m in messages} - {("note", "")}, set())
         moved = clearway.read_trajectory(path, format="tum", lever_arm=(0, 0, 1.5))
         np.testing.assert_array_equal(moved[:, 2, 3], [-1.5] * 3)
-        with self.assertRaisesRegex(clearway.UsageError, "format 'tun': expected one of auto"):
-            clearway.read_trajectory(path, format="tun")
 
     def test_a_file_in_another_unit_needs_the_unit_of_the_environment(self):
         path = self.folder / "feet.csv"
@@ -388,9 +386,7 @@ class Inputs(SceneTest):
         np.testing.assert_array_equal(labels.station, [1010, 1040, 1070, 1090])
         np.testing.assert_allclose(poses[:, :3, 3], [[x, 0, 10 + x / 100] for x in (10, 40, 70, 90)], atol=1e-12)
         self.assertEqual([message.code for message in messages], ["no-cant"])
-        for words, named in (("cant 'inner': expected one of file", {"cant": "inner"}),
-                             ("step: expected", {"step": 0}), ("--height", {"height": 3}),
-                             ("no alignment of the name", {"alignment": "b"}),
+        for words, named in (("--height", {"height": 3}), ("no alignment of the name", {"alignment": "b"}),
                              ("no profile of the name", {"profile": "b"})):
             with self.assertRaisesRegex((clearway.UsageError, clearway.InputError), words):
                 clearway.read_alignment(path, **named)
@@ -404,9 +400,8 @@ class Inputs(SceneTest):
         turned = 1 / 2  # radians after 2 m of an arc of 4 m
         np.testing.assert_allclose(poses[4, :2, 0], [np.cos(turned), np.sin(turned)], atol=1e-12)
         self.assertEqual((labels.station[0], labels.station[-1]), (100, 130))
-        for words, named in (("corner_radius: expected", {"corner_radius": 0}), ("no heights", {"corner_radius": 1}),
-                             ("turns by 90 degrees", {"height": 1})):
-            with self.assertRaisesRegex((clearway.UsageError, clearway.InputError), words) as refused:
+        for words, named in (("no heights", {"corner_radius": 1}), ("turns by 90 degrees", {"height": 1})):
+            with self.assertRaisesRegex(clearway.InputError, words) as refused:
                 clearway.read_line(path, **named)
         self.assertEqual(refused.exception.remedy, "round_corners")
         x, y = (axis.ravel() / 10 for axis in np.mgrid[-20:220, -20:220])

@@ -199,10 +199,6 @@ class Sections(SceneTest):
         stop = threading.Event()
         stop.set()
         for kind, words, named in (
-                (clearway.UsageError, "^window", {"window": (1, 2, 3)}), (clearway.UsageError, "^cell", {"cell": -1}),
-                (clearway.UsageError, "^bin", {"bin": math.nan}), (clearway.UsageError, "^pivots", {"pivots": (1,)}),
-                (clearway.UsageError, "^ignore_classes", {"ignore_classes": [300]}),
-                (clearway.UsageError, "^threads", {"threads": -1}),
                 (clearway.UsageError, "where its scanner stood", {"seen": True}),
                 (clearway.UsageError, "expected seen space", {"seen_cube": 0.1}),
                 (clearway.ResourceError, "bins of .* fit|larger cells",

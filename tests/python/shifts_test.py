@@ -52,10 +52,7 @@ class ShiftTest(SceneTest):
         stop = threading.Event()
         stop.set()
         for kind, words, named in (
-                (clearway.UsageError, "^lateral: expected two numbers", {"lateral": (1,)}),
-                (TypeError, r"^lateral\[1\]: expected a number", {"lateral": (0, "far")}),
                 (clearway.UsageError, "contains 0", {"lateral": (1, 2)}),
-                (clearway.UsageError, "^step: expected a number above 0", {"step": 0}),
                 (clearway.InputError, "another trajectory", {"poses": self.poses[:-1]}),
                 (clearway.Interrupted, "", {"stop": stop})):
             with self.subTest(named), self.assertRaisesRegex(kind, words):
