@@ -119,18 +119,6 @@ class BodyTest(SceneTest):
         feet = clearway.read_vehicle(file, self.poses, environment_unit=clearway.METRES_PER_FOOT)
         self.assertEqual(len(feet[0].poses), 13)  # a metre is 3.28 of these units
 
-    def test_what_is_wrong_in_the_file_is_named(self):
-        model = {"name": "a", "model": "model.xyz"}
-        for body, words in [({**model, "at": "far"}, r"wagon.json: bodies\[0\].at: is \"far\""),
-                            ({"name": "a"}, r"bodies\[0\].model: is missing"),
-                            ({**model, "at": 100}, r"bodies\[0\]: the path is 5.8 m long")]:
-            with self.assertRaisesRegex(clearway.InputError, words):
-                clearway.read_vehicle(self.write_vehicle([body]), self.poses)
-        with self.assertRaisesRegex(clearway.ResourceError, "none.json"):
-            clearway.read_vehicle(self.folder / "none.json", self.poses)
-        with self.assertRaisesRegex(clearway.UsageError, "model_as 'mesh'"):
-            clearway.read_vehicle(self.write_vehicle([model]), self.poses, "mesh")
-
     def test_conflicts_are_seen_from_bodies(self):
         file = self.write_vehicle([{"name": "front", "model": "model.xyz", "at": 1}])
         bodies = clearway.read_vehicle(file, self.poses)

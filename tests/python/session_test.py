@@ -36,9 +36,7 @@ class SameAsSearch(Sessions):
             answer = session.search(query, **options)
         self.assertIsInstance(answer, clearway.SearchReport)
         for name in ("verdict", "reasons", "doubts", "warned_of", "colliding_points", "near_points",
-                     "certain_points", "clearance_points", "inside_points", "profile_poses", "model_points",
-                     "model_triangles", "model_solids", "poses", "ignored_colliding",
-                     "ignored_colliding_high", "margins", "device"):
+                     "certain_points", "clearance_points", "inside_points", "margins", "device"):
             self.assertEqual(getattr(answer, name), getattr(report, name), name)
         self.assertEqual([(w.code, w.text) for w in answer.warnings],
                          [(w.code, w.text) for w in report.warnings])
