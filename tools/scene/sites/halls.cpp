@@ -187,20 +187,20 @@ constexpr double kTurn = 0.83;   // path along the line for a turn of the scan p
 
 /// The plan of a scanner whose plane turns back and forth while its platform moves on.
 ScanPlan factory_plan(const FactoryDesign& design, const Path& path, std::uint64_t points) {
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep(points, design.density_aspect),
-                .sweep = {},
-                .reach = design.half_width * 1.1,
-                .noise = kRangeNoise};
-  plan.sweep = [&path, sweeps = plan.sweeps()](std::uint64_t number) {
-    const double s = share_of(number, sweeps) * path.length();
-    const double phase = s / kTurn - std::floor(s / kTurn);
-    const double swing = phase < 0.5 ? 2 * phase : 2 - 2 * phase;
-    const double azimuth = kLeastAzimuth + swing * (kPi - 2 * kLeastAzimuth);
-    return Sweep{
-        {s, 0, kScannerHeight}, sine_cosine(azimuth), kBlindHalfAngle, 2 * kPi - kBlindHalfAngle};
-  };
-  return plan;
+  return {.points = points,
+          .rays_a_sweep = rays_a_sweep(points, design.density_aspect),
+          .reach = design.half_width * 1.1,
+          .noise = kRangeNoise,
+          .sweep = [&path](double share, std::uint64_t) {
+            const double s = share * path.length();
+            const double phase = s / kTurn - std::floor(s / kTurn);
+            const double swing = phase < 0.5 ? 2 * phase : 2 - 2 * phase;
+            const double azimuth = kLeastAzimuth + swing * (kPi - 2 * kLeastAzimuth);
+            return Sweep{{s, 0, kScannerHeight},
+                         sine_cosine(azimuth),
+                         kBlindHalfAngle,
+                         2 * kPi - kBlindHalfAngle};
+          }};
 }
 
 /// A pose of the body, which rides on the conveyor and sways a little.

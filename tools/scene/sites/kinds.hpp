@@ -51,44 +51,19 @@ inline std::unique_ptr<const Scene> with_vehicle(
 /// 1 or -1, for the left or the right of the path.
 inline double random_side(Dice& dice) { return dice.chance(0.5) ? 1 : -1; }
 
-/// How far sweep `number` is through all sweeps, 0 to 1.
-inline double share_of(std::uint64_t number, std::uint64_t sweeps) {
-  return (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
-}
-
-/// A prism of four sides that stands along the path, or, for a pole, a round one.
-inline Prism box(double s, double v, double half_length, double half_width, double bottom,
-                 double top, Roughness rough = {}) {
-  return {.s = s,
-          .v = v,
-          .half_length = half_length,
-          .half_width = half_width,
-          .bottom = bottom,
-          .top = top,
-          .rough = rough};
-}
-inline Prism pole(double s, double v, double radius, double bottom, double top,
-                  Roughness rough = {}) {
-  Prism out = box(s, v, radius, radius, bottom, top, rough);
-  out.round = true;
-  return out;
-}
-
 /// The plan of a scanner with two crossed planes, which is at place(share) of the path at a share
 /// of the time. Rays that hit nothing within the reach turn down.
 template <typename Place>
 ScanPlan crossed_planes(std::uint64_t points, double height, double reach, Place place) {
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep(points, 0.05),
-                .sweep = {},
-                .reach = reach,
-                .noise = 0.004,
-                .open_reach = reach};
-  plan.sweep = [place, height, sweeps = plan.sweeps()](std::uint64_t number) {
-    const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
-    return Sweep{{place(share_of(number, sweeps)), 0, height}, sine_cosine(azimuth), 0, 2 * kPi};
-  };
-  return plan;
+  return {.points = points,
+          .rays_a_sweep = rays_a_sweep(points, 0.05),
+          .reach = reach,
+          .noise = 0.004,
+          .open_reach = reach,
+          .sweep = [place, height](double share, std::uint64_t number) {
+            const double azimuth = number % 2 == 0 ? kPi / 4 : 3 * kPi / 4;
+            return Sweep{{place(share), 0, height}, sine_cosine(azimuth), 0, 2 * kPi};
+          }};
 }
 
 }  // namespace clearway::scene

@@ -81,22 +81,17 @@ std::vector<double> place_stations(double length, std::uint64_t seed) {
 /// The plan of a scanner that turns once about the vertical at each station, column by column.
 ScanPlan station_plan(const std::vector<double>& stations, std::uint64_t points) {
   constexpr double kFan = kHighestRay - kLowestRay, kTurn = 2 * kPi - 4 * kLeastAzimuth;
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep((points + kStations - 1) / kStations, kFan / kTurn),
-                .sweep = {},
-                .reach = kReach,
-                .noise = kRangeNoise};
-  plan.sweep = [&stations, sweeps = plan.sweeps()](std::uint64_t number) {
-    const double turns = share_of(number, sweeps) * kStations;
-    const double station = std::floor(turns);
-    double azimuth = kLeastAzimuth + (turns - station) * kTurn;
-    if (azimuth > kPi - kLeastAzimuth) azimuth += 2 * kLeastAzimuth;
-    return Sweep{{stations[static_cast<std::size_t>(station)], 0, kScannerHeight},
-                 sine_cosine(azimuth),
-                 kLowestRay,
-                 kHighestRay};
-  };
-  return plan;
+  return {.points = points,
+          .rays_a_sweep = rays_a_sweep((points + kStations - 1) / kStations, kFan / kTurn),
+          .reach = kReach,
+          .noise = kRangeNoise,
+          .sweep = [&stations](double share, std::uint64_t) {
+            const double turns = share * kStations, station = std::floor(turns);
+            double azimuth = kLeastAzimuth + (turns - station) * kTurn;
+            if (azimuth > kPi - kLeastAzimuth) azimuth += 2 * kLeastAzimuth;
+            const double s = stations[static_cast<std::size_t>(station)];
+            return Sweep{{s, 0, kScannerHeight}, sine_cosine(azimuth), kLowestRay, kHighestRay};
+          }};
 }
 
 Pose loader_pose(const Path& path, std::uint64_t number, std::uint64_t count) {

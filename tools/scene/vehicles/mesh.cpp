@@ -17,7 +17,7 @@ void Mesh::add_box(const Vec3& low, const Vec3& high) {
                                      {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
   for (const auto& f : kFaces) {
     add_quad(box.corner(f[0]), box.corner(f[1]), box.corner(f[2]), box.corner(f[3]));
-  };
+  }
 }
 
 void Mesh::add_wheel(const Vec3& centre, double radius, double width) {

@@ -108,21 +108,6 @@ void add_cross_parts(Mesh& mesh, const CarBodySize& size) {
                 {-0.28 * size.length, 0.38 * width, 0.25});
 }
 
-}  // namespace
-
-Mesh car_body(const CarBodySize& size) {
-  const Outline outline{size};
-  Mesh mesh;
-  mesh.add_skin(
-      120, [&](int i) { return outline.section(i / 120.0 - 0.5); },
-      [&](const Vec3& p) { return outline.is_open(p); });
-  add_floor(mesh, size);
-  add_cross_parts(mesh, size);
-  return mesh;
-}
-
-namespace {
-
 /// Adds the bucket, which slopes down towards the cutting edge and is open to the front.
 void add_bucket(Mesh& mesh) {
   const double back = 3.1, edge = 4.8, half = 1.3;
@@ -153,21 +138,6 @@ void add_frame_and_cab(Mesh& mesh) {
     mesh.add_box({0.9, side * 0.45 - 0.1, 1.2}, {2.9, side * 0.45 + 0.1, 1.55});  // boom
   }
 }
-
-}  // namespace
-
-Mesh front_loader() {
-  Mesh mesh;
-  for (const double x : {-3.0, 1.7}) {
-    for (const double y : {-0.92, 0.92}) mesh.add_wheel({x, y, 0.82}, 0.82, 0.62);
-    mesh.add_box({x - 0.2, -0.6, 0.55}, {x + 0.2, 0.6, 1.0});
-  }
-  add_frame_and_cab(mesh);
-  add_bucket(mesh);
-  return mesh;
-}
-
-namespace {
 
 constexpr double kHalfLength = 12.5, kHalfWidth = 1.4, kFloor = 0.95, kRoof = 3.9;
 
@@ -219,6 +189,28 @@ void add_underframe(Mesh& mesh) {
 }
 
 }  // namespace
+
+Mesh car_body(const CarBodySize& size) {
+  const Outline outline{size};
+  Mesh mesh;
+  mesh.add_skin(
+      120, [&](int i) { return outline.section(i / 120.0 - 0.5); },
+      [&](const Vec3& p) { return outline.is_open(p); });
+  add_floor(mesh, size);
+  add_cross_parts(mesh, size);
+  return mesh;
+}
+
+Mesh front_loader() {
+  Mesh mesh;
+  for (const double x : {-3.0, 1.7}) {
+    for (const double y : {-0.92, 0.92}) mesh.add_wheel({x, y, 0.82}, 0.82, 0.62);
+    mesh.add_box({x - 0.2, -0.6, 0.55}, {x + 0.2, 0.6, 1.0});
+  }
+  add_frame_and_cab(mesh);
+  add_bucket(mesh);
+  return mesh;
+}
 
 Mesh train_wagon() {
   Mesh mesh;
