@@ -24,8 +24,7 @@ def first_poses(points, model, poses, radius):
     first = np.full(len(points), -1)
     for i in reversed(range(len(poses))):
         moved = model @ poses[i, :3, :3].T + poses[i, :3, 3]
-        distances = np.linalg.norm(points[:, None, :] - moved[None, :, :], axis=2).min(axis=1)
-        first[distances < radius] = i
+        first[np.linalg.norm(points[:, None] - moved, axis=2).min(axis=1) < radius] = i
     return first
 
 
@@ -45,14 +44,10 @@ def write_las(path, quanta, scale=(0.001,) * 3, offset=(0, 0, 0), times=None, cl
     struct.pack_into("<HIIBHI", head, 94, 227, 227, 0, *((0, 20) if times is None else (1, 28)),
                      len(quanta))
     places = np.array(quanta) * scale + offset
-    struct.pack_into("<12d", head, 131, *scale, *offset,
-                     *np.stack([places.max(0), places.min(0)], 1).ravel())
-    with open(path, "wb") as file:
-        file.write(head)
-        for i, q in enumerate(quanta):
-            file.write(struct.pack("<3i3xB4x", *q, 0 if classes is None else classes[i]))
-            if times is not None:
-                file.write(struct.pack("<d", times[i]))
+    struct.pack_into("<12d", head, 131, *scale, *offset, *np.stack([places.max(0), places.min(0)], 1).ravel())
+    rows = [struct.pack("<3i3xB4x", *q, 0 if classes is None else classes[i])
+            + (b"" if times is None else struct.pack("<d", times[i])) for i, q in enumerate(quanta)]
+    Path(path).write_bytes(head + b"".join(rows))
 
 
 class SceneTest(unittest.TestCase):

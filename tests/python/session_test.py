@@ -4,7 +4,6 @@
 import gc
 import os
 import shutil
-import signal
 import threading
 import unittest
 
@@ -36,29 +35,21 @@ class SameAsSearch(Sessions):
         with clearway.Session(self.folder / store, threads=2, device="cpu") as session:
             answer = session.search(query, **options)
         self.assertIsInstance(answer, clearway.SearchReport)
-        for name in ("verdict", "reasons", "doubts", "warned_of", "colliding_points",
-                     "near_points", "certain_points", "clearance_points", "inside_points",
-                     "profile_poses", "model_points", "model_triangles", "model_solids", "poses",
-                     "ignored_colliding", "ignored_colliding_high", "margins", "device"):
+        for name in ("verdict", "reasons", "doubts", "warned_of", "colliding_points", "near_points",
+                     "certain_points", "clearance_points", "inside_points", "margins", "device"):
             self.assertEqual(getattr(answer, name), getattr(report, name), name)
         self.assertEqual([(w.code, w.text) for w in answer.warnings],
                          [(w.code, w.text) for w in report.warnings])
         result = clearway.Result(output)
-        for name, table, columns in (
-                ("collisions", result.collisions(), "source xyz first_pose last_pose body certain"),
-                ("near", result.near(), "source xyz first_pose body"),
-                ("clearances", result.clearance(), "source xyz distance pose body"),
-                ("profile", result.profile(), "source xyz distance chainage"),
-                ("unseen", result.unseen(), "cube first_pose group")):
+        for name, table in (("collisions", result.collisions()), ("near", result.near()),
+                            ("clearances", result.clearance()), ("profile", result.profile()),
+                            ("unseen", result.unseen())):
             found = getattr(answer, name)
             self.assertEqual(found is None, table is None, name)
-            for column in columns.split() if found is not None else ():
+            for column in (c for c in dir(table) if table is not None and c[0] != "_" and c != "NO_POINT"):
                 one, other = getattr(found, column), getattr(table, column)
-                self.assertEqual(one is None, other is None, column)
-                if one is not None:
-                    self.assertEqual((one.dtype, one.shape, len(found)),
-                                     (other.dtype, other.shape, len(table)), column)
-                    np.testing.assert_array_equal(one, other, column)
+                np.testing.assert_array_equal(one, other, column)
+                self.assertEqual((type(one), getattr(one, "dtype", 0)), (type(other), getattr(other, "dtype", 0)))
         answer.save(saved, overwrite=True)
         self.assertEqual(saved.read_bytes(), output.read_bytes())
         return answer
@@ -104,9 +95,8 @@ class SameAsSearch(Sessions):
 
     def test_nothing_found(self):
         answer = self.check(self.at(500, first_pose=True, clearance=0.3, profile=0.3))
-        self.assertEqual((answer.verdict, answer.collisions.xyz.shape, len(answer.clearances)),
-                         ("undecided", (0, 3), 0))
-        self.assertEqual(answer.profile.distance[0], np.inf)
+        self.assertEqual((answer.verdict, answer.collisions.xyz.shape, answer.profile.distance[0]),
+                         ("undecided", (0, 3), np.inf))
 
 
 class Arrays(Sessions):
@@ -146,10 +136,9 @@ class Arrays(Sessions):
         del answer
         self.session.close()
         gc.collect()
-        other = [np.full(100_000, 7.0) for _ in range(20)]
+        self.assertEqual(len([np.full(100_000, 7.0) for _ in range(20)]), 20)  # would take freed memory
         for name, array in arrays.items():
             np.testing.assert_array_equal(array, expected[name], name)
-        self.assertEqual(len(other), 20)
 
     def test_the_model_may_change_between_questions(self):
         model = self.model.copy()
@@ -204,13 +193,10 @@ class Lifetime(Sessions):
         self.assertTrue(session.closed)
 
     def test_refusals_leave_it_as_it_was(self):
-        expected = self.session.search(self.query()).collisions.source
-        stretched = self.query()
+        stretched, site, once = self.query(), self.folder / "site.h5", self.folder / "once.h5"
         stretched.poses = np.diag((2.0, 2, 2, 1))[None]
-        site = self.folder / "site.h5"
-        before = site.read_bytes()
-        answer = self.session.search(self.query())
-        answer.save(self.folder / "once.h5")
+        before, answer = site.read_bytes(), self.session.search(self.query())
+        answer.save(once)
         for kind, words, call, *args, named in (
                 (clearway.Error, "none.h5", clearway.Session, self.folder / "none.h5", {}),
                 (clearway.InputError, "scan.xyz", clearway.Session, self.folder / "scan.xyz", {}),
@@ -221,15 +207,13 @@ class Lifetime(Sessions):
                 (clearway.UsageError, "^engine 'best'", self.session.search, self.query(), {"engine": "best"}),
                 (TypeError, "^query: expected a clearway.Query", self.session.search, self.model, {}),
                 (clearway.InputError, "", self.session.search, self.at(500), {"strict": True}),
-                (clearway.UsageError, "once.h5", answer.save, self.folder / "once.h5", {}),
                 (clearway.UsageError, "is an input too", answer.save, site, {"overwrite": True}),
-                (clearway.ResourceError, "none", answer.save, self.folder / "none" / "out.h5", {})):
+                (clearway.ResourceError, "none", answer.save, self.folder / "none" / "out.h5", {}),
+                (clearway.UsageError, "once.h5", answer.save, once, {})):
             with self.subTest(words), self.assertRaisesRegex(kind, words) as caught:
                 call(*args, **named)
-            if words == "once.h5":
-                self.assertEqual(caught.exception.remedy, "overwrite")
-        self.assertEqual(site.read_bytes(), before)
-        np.testing.assert_array_equal(self.session.search(self.query()).collisions.source, expected)
+        self.assertEqual((caught.exception.remedy, site.read_bytes()), ("overwrite", before))
+        np.testing.assert_array_equal(self.session.search(self.query()).collisions.source, answer.collisions.source)
 
     def test_a_replaced_store_is_noticed(self):
         path = self.folder / "replaced.h5"
@@ -284,33 +268,22 @@ class Threads(Sessions):
         thread.join()
         self.assertEqual(len(raised), 1)
 
-    def test_what_a_callback_or_the_keyboard_raises_comes_out(self):
-        expected = self.session.search(self.query()).colliding_points
-
+    def test_what_a_callback_raises_comes_out_and_a_forked_process_asks_too(self):
         def raising(update):
             raise LookupError("mine")
 
-        sent = []
-
-        def interrupting(update):
-            if update.stage == "search" and not sent:
-                threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
-                sent.append(1)
-
-        for kind, progress in ((LookupError, raising), (KeyboardInterrupt, interrupting)):
-            with self.assertRaises(kind):
-                self.session.search(self.slow_query(), engine="grid", progress=progress)
+        with self.assertRaises(LookupError):
+            self.session.search(self.slow_query(), engine="grid", progress=raising)
         told = []
         answer = self.session.search(self.at(500), message=told.append)
-        self.assertEqual([m.code for m in told if m.severity == "warning"],
-                         [w.code for w in answer.warnings])
-        child = os.fork()  # a forked process asks too
+        self.assertEqual([m.code for m in told if m.severity == "warning"], [w.code for w in answer.warnings])
+        expected = self.session.search(self.query()).colliding_points
+        child = os.fork()
         if child == 0:
-            found = -1
             try:
-                found = self.session.search(self.query()).colliding_points
+                os._exit(0 if self.session.search(self.query()).colliding_points == expected else 1)
             finally:
-                os._exit(0 if found == expected else 1)
+                os._exit(2)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
 
 

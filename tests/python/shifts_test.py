@@ -25,22 +25,19 @@ class ShiftTest(SceneTest):
         self.assertEqual([(row.conflict, row.first_pose, row.last_pose, row.chainage_to, row.station_from)
                           for row in table.conflicts],
                          [(c.id, c.first_pose, c.last_pose, c.chainage_to, None) for c in conflicts])
-        # The path is straight, so moving it aside is moving the points.
         for row in [*table.conflicts, table.path]:
-            poses = self.poses[row.first_pose:row.last_pose + 1]
-            if row.shift is not None:
-                aside = poses.copy()
+            if row.shift is not None:  # the model fits when the straight path is moved aside
+                aside = self.poses[row.first_pose:row.last_pose + 1] + 0
                 aside[:, 1, 3] += row.shift
-                clearway.search(store, clearway.Query(self.model, aside, RADIUS),
-                                self.folder / "aside.h5", overwrite=True)
-                self.assertEqual(clearway.Result(self.folder / "aside.h5").size(), 0)
+                report = clearway.search(store, clearway.Query(self.model, aside, RADIUS),
+                                         self.folder / "aside.h5", overwrite=True)
+                self.assertEqual(report.colliding_points, 0)
         self.assertTrue(any(row.shift for row in table.conflicts))
         self.assertEqual((table.path.conflict, table.path.last_pose, table.lateral_from,
                           table.lateral_to, table.step), (0, len(self.poses) - 1, -3, 2.75, 0.25))
         self.assertEqual(table.searches,
                          table.path.searches + sum(row.searches for row in table.conflicts))
-        self.assertIn("the whole path: ", repr(table))
-        self.assertIn("conflict 1: ", repr(table.conflicts[0]))
+        self.assertRegex(repr(table) + repr(table.conflicts[0]), "(?s)the whole path: .*conflict 1: ")
         body = clearway.Body("one", self.model, self.poses)
         clearway.search(store, clearway.Query(poses=self.poses, radius=RADIUS, bodies=[body],
                                               first_pose=True), self.folder / "bodies.h5")
@@ -55,13 +52,8 @@ class ShiftTest(SceneTest):
         stop = threading.Event()
         stop.set()
         for kind, words, named in (
-                (clearway.UsageError, "^lateral: expected two numbers", {"lateral": (1,)}),
-                (TypeError, r"^lateral\[1\]: expected a number", {"lateral": (0, "far")}),
                 (clearway.UsageError, "contains 0", {"lateral": (1, 2)}),
-                (clearway.UsageError, "^step: expected a number above 0", {"step": 0}),
-                (clearway.UsageError, "more than 1,000,000", {"step": 1e-9}),
                 (clearway.InputError, "another trajectory", {"poses": self.poses[:-1]}),
-                (TypeError, "did you mean 'bodies'", {"vehicle": []}),
                 (clearway.Interrupted, "", {"stop": stop})):
             with self.subTest(named), self.assertRaisesRegex(kind, words):
                 clearway.find_shifts(**{"result": result, "store": store, "model": self.model,

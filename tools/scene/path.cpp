@@ -11,21 +11,17 @@ namespace {
 constexpr double kStep = 0.05;
 constexpr int kSplineSteps = 2000;  // for each span
 
-/// The point of the uniform cubic B-spline over four control points at f in [0, 1].
-Vec3 spline_point(const Vec3* control, double f) {
-  const double g = 1 - f, f2 = f * f, f3 = f2 * f;
-  return (1.0 / 6) * ((g * g * g) * control[0] + (3 * f3 - 6 * f2 + 4) * control[1] +
-                      (-3 * f3 + 3 * f2 + 3 * f + 1) * control[2] + f3 * control[3]);
-}
-
+/// Points along the uniform cubic B-spline over these control points, first and last the same.
 std::vector<Vec3> fine_spline(std::span<const Vec3> control) {
   std::vector<Vec3> out;
   const std::size_t n = control.size();
   for (std::size_t i = 0; i < n; ++i) {
-    const Vec3 four[] = {control[i], control[(i + 1) % n], control[(i + 2) % n],
-                         control[(i + 3) % n]};
     for (int k = 0; k < kSplineSteps; ++k) {
-      out.push_back(spline_point(four, static_cast<double>(k) / kSplineSteps));
+      const double f = static_cast<double>(k) / kSplineSteps, g = 1 - f, f2 = f * f, f3 = f2 * f;
+      out.push_back((1.0 / 6) *
+                    ((g * g * g) * control[i] + (3 * f3 - 6 * f2 + 4) * control[(i + 1) % n] +
+                     (-3 * f3 + 3 * f2 + 3 * f + 1) * control[(i + 2) % n] +
+                     f3 * control[(i + 3) % n]));
     }
   }
   out.push_back(out.front());

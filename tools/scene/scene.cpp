@@ -17,10 +17,26 @@ Pose pose_along(const Vec3& position, const Vec3& forward, const Attitude& attit
   return {{x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z}, {position.x, position.y, position.z}};
 }
 
-std::string_view name_of(Kind kind) {
-  constexpr std::string_view kNames[] = {"hall", "plant", "mine", "tunnel", "road"};
-  return kNames[static_cast<int>(kind)];
-}
+namespace {
+
+struct Entry {
+  std::string_view name;
+  Sizes full_sizes;
+  std::unique_ptr<const Scene> (*make)(const Sizes& sizes, std::uint64_t seed);
+};
+
+/// In the order of Kind.
+constexpr Entry kEntries[] = {{"hall", {55872714, 214489, 17234}, make_hall},
+                              {"plant", {350109065, 434700, 398999}, make_plant},
+                              {"mine", {806183400, 100000, 17795}, make_mine},
+                              {"tunnel", {18919000, 28622, 19392}, make_tunnel},
+                              {"road", {20000000, 100000, 4000}, make_road}};
+
+const Entry& entry_of(Kind kind) { return kEntries[static_cast<int>(kind)]; }
+
+}  // namespace
+
+std::string_view name_of(Kind kind) { return entry_of(kind).name; }
 
 Kind kind_named(std::string_view name) {
   for (const Kind kind : kAllKinds) {
@@ -29,32 +45,13 @@ Kind kind_named(std::string_view name) {
   throw UsageError("no such scene: " + std::string(name));
 }
 
-Sizes full_sizes(Kind kind) {
-  constexpr Sizes kSizes[] = {{55872714, 214489, 17234},
-                              {350109065, 434700, 398999},
-                              {806183400, 100000, 17795},
-                              {18919000, 28622, 19392},
-                              {20000000, 100000, 4000}};
-  return kSizes[static_cast<int>(kind)];
-}
+Sizes full_sizes(Kind kind) { return entry_of(kind).full_sizes; }
 
 std::unique_ptr<const Scene> make_scene(Kind kind, const Sizes& sizes, std::uint64_t seed) {
   if (sizes.points == 0 || sizes.model_points == 0 || sizes.poses == 0) {
     throw UsageError("a scene needs at least one environment point, model point and pose");
   }
-  switch (kind) {
-    case Kind::kHall:
-      return make_hall(sizes, seed);
-    case Kind::kPlant:
-      return make_plant(sizes, seed);
-    case Kind::kMine:
-      return make_mine(sizes, seed);
-    case Kind::kTunnel:
-      return make_tunnel(sizes, seed);
-    case Kind::kRoad:
-      return make_road(sizes, seed);
-  }
-  throw UsageError("no such kind of scene");
+  return entry_of(kind).make(sizes, seed);
 }
 
 }  // namespace clearway::scene

@@ -77,7 +77,7 @@ void write_origins(const Scene& scene, const File& file) {
   put("first,x,y,z\n");
   std::optional<Vec3> before;
   for (std::uint64_t sweep = 0; sweep < scene.plan.sweeps(); ++sweep) {
-    const Vec3 at = scene.path.to_world(scene.plan.sweep(sweep).scanner);
+    const Vec3 at = scene.path.to_world(scene.plan.sweep_of(sweep).scanner);
     if (before && at.x == before->x && at.y == before->y && at.z == before->z) continue;
     before = at;
     put(std::to_string(sweep * scene.plan.rays_a_sweep) + "," + format_number(at.x) + "," +

@@ -42,12 +42,8 @@ QuantumBox bounds_of(const Path& path, const World& world, const ScanPlan& plan)
       hi[k] = std::max(hi[k], p[k] + margin);
     }
   }
-  QuantumBox out{};
-  for (int k = 0; k < 3; ++k) {
-    out.lo[k] = quantum(lo[k]);
-    out.hi[k] = quantum(hi[k]);
-  }
-  return out;
+  return {{quantum(lo.x), quantum(lo.y), quantum(lo.z)},
+          {quantum(hi.x), quantum(hi.y), quantum(hi.z)}};
 }
 
 }  // namespace
@@ -100,7 +96,7 @@ std::array<std::int32_t, 3> Scanner::point(const Sweep& sweep, const Fan& fan, s
 }
 
 void Scanner::scan(std::uint64_t number, Points& out) const {
-  const Sweep sweep = plan_.sweep(number);
+  const Sweep sweep = plan_.sweep_of(number);
   const Room& room = world_.room_at(sweep.scanner.s);
   const std::uint64_t first = number * plan_.rays_a_sweep;
   const std::uint64_t count = std::min(plan_.rays_a_sweep, plan_.points - first);
@@ -111,20 +107,19 @@ void Scanner::scan(std::uint64_t number, Points& out) const {
   cut_prisms(world_.prisms_near(sweep.scanner.s, plan_.reach), sweep.scanner, sweep.azimuth,
              rectangles);
   std::uint64_t counter = first;
-  const auto cast = [&](double begin, double end, std::uint64_t rays, double farthest) {
+  const auto cast = [&](double begin, double end, std::uint64_t rays, double far) {
     fan.aim(begin, end, rays, jitter_, counter);
     fan.meet_room(room, sweep.scanner, sweep.azimuth);
     for (const Rectangle& rectangle : rectangles) fan.meet_rectangle(rectangle);
     const std::uint64_t before = out.size();
     for (std::size_t k = 0; k < rays; ++k) {
-      if (fan.inverse_distance(k) * farthest > 1) out.push_back(point(sweep, fan, k, counter + k));
+      if (fan.inverse_distance(k) * far > 1) out.push_back(point(sweep, fan, k, counter + k));
     }
     counter += rays;
     return rays - (out.size() - before);
   };
-  const bool open = room.open;
-  const std::uint64_t lost =
-      cast(sweep.begin_angle, sweep.end_angle, count, open ? plan_.open_reach : kAnyDistance);
+  const double farthest = room.open ? plan_.open_reach : kAnyDistance;
+  const std::uint64_t lost = cast(sweep.begin_angle, sweep.end_angle, count, farthest);
   counter = ~first;  // other random numbers for the rays that replace those lost to the sky
   cast(0, kDownAngle, lost / 2, kAnyDistance);
   cast(2 * kPi - kDownAngle, 2 * kPi, lost - lost / 2, kAnyDistance);

@@ -24,12 +24,16 @@ struct Sweep {
 struct ScanPlan {
   std::uint64_t points;
   std::uint64_t rays_a_sweep;
-  std::function<Sweep(std::uint64_t sweep)> sweep;
   double reach;           ///< no ray goes farther along the path than this
   double noise;           ///< standard deviation of a measured distance
   double open_reach = 0;  ///< where a room has no roof: rays that hit nothing up to here turn down
+  /// Sweep `number`, which is at `share` of the time, 0 to 1.
+  std::function<Sweep(double share, std::uint64_t number)> sweep;
 
   std::uint64_t sweeps() const { return (points + rays_a_sweep - 1) / rays_a_sweep; }
+  Sweep sweep_of(std::uint64_t number) const {
+    return sweep((static_cast<double>(number) + 0.5) / static_cast<double>(sweeps()), number);
+  }
 };
 
 /// The number of rays in a sweep for which `points` rays in all lie `aspect` times as far apart

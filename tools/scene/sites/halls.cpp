@@ -1,8 +1,6 @@
 #include <cmath>
 
-#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/vehicles.hpp"
 
 namespace clearway::scene {
 namespace {
@@ -113,7 +111,7 @@ void add_rows(World& world, const FactoryDesign& design, double length, Dice& di
 void add_fixtures(World& world, const FactoryDesign& design, double length, Dice& dice) {
   const double half = design.car.width / 2;
   for (double s = 0; s < length; s += design.fixture_spacing * dice.between(0.6, 1.4)) {
-    const double side = dice.chance(0.5) ? 1 : -1;
+    const double side = random_side(dice);
     const double gap = dice.between(-0.06, 0.3), w = dice.between(0.6, 1.5);
     const double size = dice.between(0.08, 0.2);
     world.add(box(s, side * (half + gap + 0.2), size, 0.2, w, w + dice.between(0.1, 0.5)));
@@ -189,22 +187,20 @@ constexpr double kTurn = 0.83;   // path along the line for a turn of the scan p
 
 /// The plan of a scanner whose plane turns back and forth while its platform moves on.
 ScanPlan factory_plan(const FactoryDesign& design, const Path& path, std::uint64_t points) {
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep(points, design.density_aspect),
-                .sweep = {},
-                .reach = design.half_width * 1.1,
-                .noise = kRangeNoise};
-  const std::uint64_t sweeps = plan.sweeps();
-  plan.sweep = [&path, sweeps](std::uint64_t number) {
-    const double share = (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps);
-    const double s = share * path.length();
-    const double phase = s / kTurn - std::floor(s / kTurn);
-    const double swing = phase < 0.5 ? 2 * phase : 2 - 2 * phase;
-    const double azimuth = kLeastAzimuth + swing * (kPi - 2 * kLeastAzimuth);
-    return Sweep{
-        {s, 0, kScannerHeight}, sine_cosine(azimuth), kBlindHalfAngle, 2 * kPi - kBlindHalfAngle};
-  };
-  return plan;
+  return {.points = points,
+          .rays_a_sweep = rays_a_sweep(points, design.density_aspect),
+          .reach = design.half_width * 1.1,
+          .noise = kRangeNoise,
+          .sweep = [&path](double share, std::uint64_t) {
+            const double s = share * path.length();
+            const double phase = s / kTurn - std::floor(s / kTurn);
+            const double swing = phase < 0.5 ? 2 * phase : 2 - 2 * phase;
+            const double azimuth = kLeastAzimuth + swing * (kPi - 2 * kLeastAzimuth);
+            return Sweep{{s, 0, kScannerHeight},
+                         sine_cosine(azimuth),
+                         kBlindHalfAngle,
+                         2 * kPi - kBlindHalfAngle};
+          }};
 }
 
 /// A pose of the body, which rides on the conveyor and sways a little.
@@ -225,33 +221,19 @@ std::unique_ptr<const Scene> make_factory(Kind kind, const FactoryDesign& design
                             {0, 1, design.height},
                             {1, 0, design.half_width},
                             {-1, 0, design.half_width}}};
-  auto scene = std::make_unique<Scene>(
-      Scene{kind, sizes, Path::from_pieces(design.line, 0), World({room}), {}, {}, {}, {}});
+  auto scene = empty_scene(kind, sizes, Path::from_pieces(design.line, 0), {room});
   furnish(scene->world, design, scene->path.length(), seed);
   scene->plan = factory_plan(design, scene->path, sizes.points);
-  scene->world.finish(scene->path, scene->plan.reach);
-  scene->model = sample_mesh(
-      car_body(design.car), sizes.model_points, 0, [](const Vec3&) { return 1.0; },
-      Random(seed, kModelStream));
-  scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
-    return body_pose(path, number, count);
-  };
-  return scene;
+  return with_vehicle(std::move(scene), seed, car_body(design.car), 0, body_pose);
 }
 
 }  // namespace
 
 std::unique_ptr<const Scene> make_hall(const Sizes& sizes, std::uint64_t seed) {
   constexpr double kBend = 1 / 16.0;
-  const FactoryDesign design{.line = {{24, 0},
-                                      {4, kBend},
-                                      {10, kBend},
-                                      {4, 0},
-                                      {8, 0},
-                                      {4, -kBend},
-                                      {10, -kBend},
-                                      {4, 0},
-                                      {20, 0}},
+  const std::vector<PathPiece> line{{24, 0},     {4, kBend},   {10, kBend}, {4, 0}, {8, 0},
+                                    {4, -kBend}, {10, -kBend}, {4, 0},      {20, 0}};
+  const FactoryDesign design{.line = line,
                              .half_width = 12,
                              .height = 7,
                              .car = {4.5, 1.9, 1.5},

@@ -1,8 +1,6 @@
 #include <cmath>
 
-#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/vehicles.hpp"
 
 /// Like El Teniente: galleries around a block of rock, scanned stop and go, and a front loader that
 /// follows a B-spline through the stations (the paper, section 4.3).
@@ -47,10 +45,8 @@ Room gallery() {
   constexpr double kHalf = 2.3, kSpring = 2.2, kRise = 2.1;
   Room room{.begin_s = 0, .walls = {{0, -1, 0, kFloor}}};
   constexpr int kSides = 14;
-  for (int i = 0; i <= kSides; ++i) {
-    const SineCosine angle = sine_cosine(kPi * i / kSides);
-    // This wall is a tangent of the ellipse over the springing line.
-    const double nv = angle.cosine, nw = angle.sine;
+  for (int i = 0; i <= kSides; ++i) {  // tangents of the ellipse over the springing line
+    const auto [nw, nv] = sine_cosine(kPi * i / kSides);
     const double support = std::sqrt(kHalf * kHalf * nv * nv + kRise * kRise * nw * nw);
     room.walls.push_back({nv, nw, support + nw * kSpring, kRock});
   }
@@ -63,7 +59,7 @@ void add_fittings(World& world, double length, std::uint64_t seed) {
   world.add_everywhere(-1.75, -1.65, 2.9, 3.0);  // water and air pipes
   world.add_everywhere(-1.62, -1.56, 3.05, 3.11);
   for (double s = 0; s < length; s += dice.between(1, 6)) {  // rubble along the sides
-    const double side = dice.chance(0.5) ? 1 : -1, radius = dice.between(0.2, 0.6);
+    const double side = random_side(dice), radius = dice.between(0.2, 0.6);
     const double v = side * dice.between(1.4, 2.2);
     world.add(pole(s, v, radius, -0.1, dice.between(0.15, 0.8), kRubble));
   }
@@ -85,24 +81,17 @@ std::vector<double> place_stations(double length, std::uint64_t seed) {
 /// The plan of a scanner that turns once about the vertical at each station, column by column.
 ScanPlan station_plan(const std::vector<double>& stations, std::uint64_t points) {
   constexpr double kFan = kHighestRay - kLowestRay, kTurn = 2 * kPi - 4 * kLeastAzimuth;
-  ScanPlan plan{.points = points,
-                .rays_a_sweep = rays_a_sweep((points + kStations - 1) / kStations, kFan / kTurn),
-                .sweep = {},
-                .reach = kReach,
-                .noise = kRangeNoise};
-  const std::uint64_t sweeps = plan.sweeps();
-  plan.sweep = [&stations, sweeps](std::uint64_t number) {
-    const double turns =
-        (static_cast<double>(number) + 0.5) / static_cast<double>(sweeps) * kStations;
-    const double station = std::floor(turns);
-    double azimuth = kLeastAzimuth + (turns - station) * kTurn;
-    if (azimuth > kPi - kLeastAzimuth) azimuth += 2 * kLeastAzimuth;
-    return Sweep{{stations[static_cast<std::size_t>(station)], 0, kScannerHeight},
-                 sine_cosine(azimuth),
-                 kLowestRay,
-                 kHighestRay};
-  };
-  return plan;
+  return {.points = points,
+          .rays_a_sweep = rays_a_sweep((points + kStations - 1) / kStations, kFan / kTurn),
+          .reach = kReach,
+          .noise = kRangeNoise,
+          .sweep = [&stations](double share, std::uint64_t) {
+            const double turns = share * kStations, station = std::floor(turns);
+            double azimuth = kLeastAzimuth + (turns - station) * kTurn;
+            if (azimuth > kPi - kLeastAzimuth) azimuth += 2 * kLeastAzimuth;
+            const double s = stations[static_cast<std::size_t>(station)];
+            return Sweep{{s, 0, kScannerHeight}, sine_cosine(azimuth), kLowestRay, kHighestRay};
+          }};
 }
 
 Pose loader_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
@@ -115,20 +104,11 @@ Pose loader_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
 }  // namespace
 
 std::unique_ptr<const Scene> make_mine(const Sizes& sizes, std::uint64_t seed) {
-  auto scene = std::make_unique<Scene>(
-      Scene{Kind::kMine, sizes, gallery_loop(seed), World({gallery()}), {}, {}, {}, {}});
-  const double length = scene->path.length();
-  add_fittings(scene->world, length, seed);
-  scene->world.finish(scene->path, kReach);
-  scene->stations = place_stations(length, seed);
+  auto scene = empty_scene(Kind::kMine, sizes, gallery_loop(seed), {gallery()});
+  add_fittings(scene->world, scene->path.length(), seed);
+  scene->stations = place_stations(scene->path.length(), seed);
   scene->plan = station_plan(scene->stations, sizes.points);
-  scene->model = sample_mesh(
-      front_loader(), sizes.model_points, 0, [](const Vec3&) { return 1.0; },
-      Random(seed, kModelStream));
-  scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
-    return loader_pose(path, number, count);
-  };
-  return scene;
+  return with_vehicle(std::move(scene), seed, front_loader(), 0, loader_pose);
 }
 
 }  // namespace clearway::scene

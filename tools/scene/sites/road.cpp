@@ -1,8 +1,6 @@
 #include <cmath>
 
-#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/vehicles.hpp"
 
 /// A road through a village, scanned from a car with two crossed scan planes, and a lorry with a
 /// high load. The lorry passes everywhere except at two places: a sign hangs too low over the lane,
@@ -65,12 +63,16 @@ void add_obstacles(World& world) {
   world.add(box(kVan, 2.6, 2.6, 0.95, 0.3, 2.4));
 }
 
+Pose lorry_pose(const Path& path, std::uint64_t number, std::uint64_t count) {
+  const double s = along(kOverhang, path.length() - kOverhang, number, count);
+  return pose_along(path.to_world({s, 0, 0}), path.direction(s), {});
+}
+
 }  // namespace
 
 std::unique_ptr<const Scene> make_road(const Sizes& sizes, std::uint64_t seed) {
-  World world({{.begin_s = -1e9, .walls = {{0, -1, 0, kAsphalt}}, .open = true}});
-  auto scene =
-      std::make_unique<Scene>(Scene{Kind::kRoad, sizes, road(), std::move(world), {}, {}, {}, {}});
+  auto scene = empty_scene(Kind::kRoad, sizes, road(),
+                           {{.begin_s = -1e9, .walls = {{0, -1, 0, kAsphalt}}, .open = true}});
   const double length = scene->path.length();
   Dice dice(seed, kLayoutStream);
   for (const double side : {-1.0, 1.0}) {
@@ -81,17 +83,9 @@ std::unique_ptr<const Scene> make_road(const Sizes& sizes, std::uint64_t seed) {
   add_houses(scene->world, length, dice);
   add_roadside(scene->world, length, dice);
   add_obstacles(scene->world);
-  scene->world.finish(scene->path, kReach);
   scene->plan = crossed_planes(sizes.points, kScannerHeight, kReach,
                                [length](double share) { return share * length; });
-  scene->model = sample_mesh(
-      lorry(), sizes.model_points, 0.002, [](const Vec3&) { return 1.0; },
-      Random(seed, kModelStream));
-  scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
-    const double s = along(kOverhang, path.length() - kOverhang, number, count);
-    return pose_along(path.to_world({s, 0, 0}), path.direction(s), {});
-  };
-  return scene;
+  return with_vehicle(std::move(scene), seed, lorry(), 0.002, lorry_pose);
 }
 
 }  // namespace clearway::scene

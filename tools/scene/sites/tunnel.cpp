@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/scene.hpp"
 #include "scene/sites/kinds.hpp"
-#include "scene/vehicles/vehicles.hpp"
 
 /// Like the Train Tunnel: a curved tunnel between two open stretches, seen from two crossed scan
 /// planes on the back of a train, and a wagon whose bogies follow the track (the paper,
@@ -82,7 +80,7 @@ void add_tunnel_fittings(World& world, Dice& dice) {
     world.add(box(s, -1.75, half_length, 0.25, -0.2, dice.between(0.3, 0.7)));
   }
   for (double s = kOpenBefore + 30; s < end - 40; s += dice.between(40, 90)) {  // platforms
-    const double side = dice.chance(0.5) ? 1 : -1;
+    const double side = random_side(dice);
     world.add(box(s, side * 2.2, 14, 0.7, -0.5, 0.9));
   }
   for (const double s : {kOpenBefore, end}) {  // portals
@@ -97,7 +95,7 @@ void add_open_fittings(World& world, double begin, double end, Dice& dice) {
     world.add(box(s, 1.6, 0.05, 1.6, 5.6, 5.7));
   }
   for (double s = begin; s < end; s += dice.between(1, 5)) {  // bushes and trees
-    const double side = dice.chance(0.5) ? 1 : -1, radius = dice.between(0.3, 1.6);
+    const double side = random_side(dice), radius = dice.between(0.3, 1.6);
     const double v = side * dice.between(6, 24);
     world.add(pole(s, v, radius, -2, dice.between(0.3, 6), {0.3 * radius, 0.5, 0.1, 0.15}));
   }
@@ -138,24 +136,17 @@ double scanned_density(const Vec3& p) {
 }  // namespace
 
 std::unique_ptr<const Scene> make_tunnel(const Sizes& sizes, std::uint64_t seed) {
-  World world({open_room(-1e9), tunnel_room(), open_room(kOpenBefore + kTunnel)});
-  auto scene = std::make_unique<Scene>(
-      Scene{Kind::kTunnel, sizes, track(), std::move(world), {}, {}, {}, {}});
+  auto scene = empty_scene(Kind::kTunnel, sizes, track(),
+                           {open_room(-1e9), tunnel_room(), open_room(kOpenBefore + kTunnel)});
   const double length = scene->path.length();
   Dice dice(seed, kLayoutStream);
   add_track(scene->world, length, dice);
   add_tunnel_fittings(scene->world, dice);
   add_open_fittings(scene->world, -40, kOpenBefore, dice);
   add_open_fittings(scene->world, kOpenBefore + kTunnel, length + 40, dice);
-  scene->world.finish(scene->path, kOpenReach);
   scene->plan = crossed_planes(sizes.points, kScannerHeight, kOpenReach,
                                [length](double share) { return train_position(share, length); });
-  scene->model = sample_mesh(train_wagon(), sizes.model_points, 0.004, scanned_density,
-                             Random(seed, kModelStream));
-  scene->pose = [&path = scene->path, count = sizes.poses](std::uint64_t number) {
-    return wagon_pose(path, number, count);
-  };
-  return scene;
+  return with_vehicle(std::move(scene), seed, train_wagon(), 0.004, wagon_pose, scanned_density);
 }
 
 }  // namespace clearway::scene

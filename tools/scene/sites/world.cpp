@@ -15,13 +15,8 @@ double radius_of(const Prism& prism) {
 
 void World::add_everywhere(double left, double right, double bottom, double top, Roughness rough) {
   constexpr double kBeyondAnyPath = 1e6;
-  everywhere_.push_back({.s = 0,
-                         .v = (left + right) / 2,
-                         .half_length = kBeyondAnyPath,
-                         .half_width = (right - left) / 2,
-                         .bottom = bottom,
-                         .top = top,
-                         .rough = rough});
+  everywhere_.push_back(
+      box(0, (left + right) / 2, kBeyondAnyPath, (right - left) / 2, bottom, top, rough));
 }
 
 void World::finish(const Path& path, double reach) {

@@ -35,6 +35,15 @@ struct Prism {
   Roughness rough{};
 };
 
+inline Prism box(double s, double v, double half_length, double half_width, double bottom,
+                 double top, Roughness rough = {}) {
+  return {s, v, half_length, half_width, bottom, top, {0, 1}, false, rough};
+}
+inline Prism pole(double s, double v, double radius, double bottom, double top,
+                  Roughness rough = {}) {
+  return {s, v, radius, radius, bottom, top, {0, 1}, true, rough};
+}
+
 /// All that a scanner may see, in path coordinates.
 class World {
  public:

@@ -17,7 +17,7 @@ void Mesh::add_box(const Vec3& low, const Vec3& high) {
                                      {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
   for (const auto& f : kFaces) {
     add_quad(box.corner(f[0]), box.corner(f[1]), box.corner(f[2]), box.corner(f[3]));
-  };
+  }
 }
 
 void Mesh::add_wheel(const Vec3& centre, double radius, double width) {
@@ -35,15 +35,16 @@ void Mesh::add_wheel(const Vec3& centre, double radius, double width) {
   }
 }
 
-void Mesh::add_skin(const std::vector<std::vector<Vec3>>& sections,
+void Mesh::add_skin(int steps, const std::function<std::vector<Vec3>(int)>& section,
                     const std::function<bool(const Vec3&)>& open) {
-  for (std::size_t i = 0; i + 1 < sections.size(); ++i) {
-    const auto& p = sections[i];
-    const auto& q = sections[i + 1];
+  std::vector<Vec3> p = section(0);
+  for (int i = 1; i <= steps; ++i) {
+    const std::vector<Vec3> q = section(i);
     for (std::size_t k = 0; k + 1 < p.size(); ++k) {
       const Vec3 middle = 0.25 * (p[k] + p[k + 1] + q[k] + q[k + 1]);
       if (!open(middle)) add_quad(p[k], q[k], q[k + 1], p[k + 1]);
     }
+    p = q;
   }
 }
 

@@ -21,9 +21,9 @@ class Mesh {
   void add_box(const Vec3& low, const Vec3& high);
   /// Adds a closed cylinder along y, for wheels and axles.
   void add_wheel(const Vec3& centre, double radius, double width);
-  /// Adds a skin through sections of equally many points. A quad is left out where `open` says so
-  /// of its middle, as for windows and wheel arches.
-  void add_skin(const std::vector<std::vector<Vec3>>& sections,
+  /// Adds a skin through the sections 0 to `steps`, which have equally many points. A quad is left
+  /// out where `open` says so of its middle, as for windows and wheel arches.
+  void add_skin(int steps, const std::function<std::vector<Vec3>(int)>& section,
                 const std::function<bool(const Vec3&)>& open);
 
   const std::vector<Triangle>& triangles() const { return triangles_; }

@@ -8,7 +8,20 @@
 namespace clearway::scene {
 namespace {
 
-constexpr int kSections = 120, kAround = 96;
+/// A superellipse of exponent 4 over the floor, from left to right, with its width at each height
+/// times narrowed(height).
+template <typename Narrowed>
+std::vector<Vec3> hoop(int steps, const Vec3& floor, double half_width, double top,
+                       Narrowed narrowed) {
+  std::vector<Vec3> out;
+  for (int i = 0; i <= steps; ++i) {
+    const SineCosine angle = sine_cosine(kPi * i / steps);
+    const double z = floor.z + (top - floor.z) * std::sqrt(std::max(0.0, angle.sine));
+    const double y = half_width * narrowed(z) * std::sqrt(std::abs(angle.cosine));
+    out.push_back({floor.x, angle.cosine < 0 ? -y : y, z});
+  }
+  return out;
+}
 
 /// The outline of the body, with x as a share of the length from its middle.
 struct Outline {
@@ -28,20 +41,10 @@ struct Outline {
     return size.width / 2 * (1 - 0.14 * beyond * beyond);
   }
 
-  /// The section at a share of the length: a superellipse of exponent 4 over the sills, drawn in
-  /// above the belt line.
+  /// The section at a share of the length, drawn in above the belt line.
   std::vector<Vec3> section(double share) const {
-    constexpr double kSill = 0.1;
-    std::vector<Vec3> out;
-    for (int i = 0; i <= kAround; ++i) {
-      const SineCosine angle = sine_cosine(kPi * i / kAround);
-      const double z = kSill + (top(share) - kSill) * std::sqrt(std::max(0.0, angle.sine));
-      const double above_belt = std::max(0.0, z / size.height - 0.6);
-      const double y = half_width(share) * (1 - 0.5 * above_belt) *
-                       std::sqrt(std::abs(angle.cosine)) * (angle.cosine < 0 ? -1 : 1);
-      out.push_back({share * size.length, y, z});
-    }
-    return out;
+    return hoop(96, {share * size.length, 0, 0.1}, half_width(share), top(share),
+                [&](double z) { return 1 - 0.5 * std::max(0.0, z / size.height - 0.6); });
   }
 
   bool is_open(const Vec3& p) const {
@@ -105,23 +108,6 @@ void add_cross_parts(Mesh& mesh, const CarBodySize& size) {
                 {-0.28 * size.length, 0.38 * width, 0.25});
 }
 
-}  // namespace
-
-Mesh car_body(const CarBodySize& size) {
-  const Outline outline{size};
-  std::vector<std::vector<Vec3>> sections;
-  for (int i = 0; i <= kSections; ++i) {
-    sections.push_back(outline.section(static_cast<double>(i) / kSections - 0.5));
-  }
-  Mesh mesh;
-  mesh.add_skin(sections, [&](const Vec3& p) { return outline.is_open(p); });
-  add_floor(mesh, size);
-  add_cross_parts(mesh, size);
-  return mesh;
-}
-
-namespace {
-
 /// Adds the bucket, which slopes down towards the cutting edge and is open to the front.
 void add_bucket(Mesh& mesh) {
   const double back = 3.1, edge = 4.8, half = 1.3;
@@ -153,34 +139,12 @@ void add_frame_and_cab(Mesh& mesh) {
   }
 }
 
-}  // namespace
-
-Mesh front_loader() {
-  Mesh mesh;
-  for (const double x : {-3.0, 1.7}) {
-    for (const double y : {-0.92, 0.92}) mesh.add_wheel({x, y, 0.82}, 0.82, 0.62);
-    mesh.add_box({x - 0.2, -0.6, 0.55}, {x + 0.2, 0.6, 1.0});
-  }
-  add_frame_and_cab(mesh);
-  add_bucket(mesh);
-  return mesh;
-}
-
-namespace {
-
 constexpr double kHalfLength = 12.5, kHalfWidth = 1.4, kFloor = 0.95, kRoof = 3.9;
 
 std::vector<Vec3> section(double x) {
-  constexpr int kSteps = 64;
   const double beyond = std::max(0.0, std::abs(x) - 11.8) / 0.7;
-  const double half = kHalfWidth * (1 - 0.12 * beyond * beyond);
-  std::vector<Vec3> out;
-  for (int i = 0; i <= kSteps; ++i) {
-    const SineCosine angle = sine_cosine(kPi * i / kSteps);
-    const double y = half * std::sqrt(std::abs(angle.cosine)) * (angle.cosine < 0 ? -1 : 1);
-    out.push_back({x, y, kFloor + (kRoof - kFloor) * std::sqrt(std::max(0.0, angle.sine))});
-  }
-  return out;
+  return hoop(64, {x, 0, kFloor}, kHalfWidth * (1 - 0.12 * beyond * beyond), kRoof,
+              [](double) { return 1.0; });
 }
 
 /// Whether a window is there; windows of 1.2 m lie every 1.8 m.
@@ -190,12 +154,8 @@ bool is_window(const Vec3& p) {
 }
 
 void add_body(Mesh& mesh) {
-  std::vector<std::vector<Vec3>> sections;
-  constexpr int kSteps = 150;
-  for (int i = 0; i <= kSteps; ++i) {
-    sections.push_back(section(kHalfLength * (2.0 * i / kSteps - 1)));
-  }
-  mesh.add_skin(sections, is_window);
+  mesh.add_skin(
+      150, [](int i) { return section(kHalfLength * (2.0 * i / 150 - 1)); }, is_window);
   for (const double x : {-kHalfLength, kHalfLength}) {
     mesh.add_quad({x, -1.2, kFloor}, {x, 1.2, kFloor}, {x, 1.2, 3.5}, {x, -1.2, 3.5});
   }
@@ -229,6 +189,28 @@ void add_underframe(Mesh& mesh) {
 }
 
 }  // namespace
+
+Mesh car_body(const CarBodySize& size) {
+  const Outline outline{size};
+  Mesh mesh;
+  mesh.add_skin(
+      120, [&](int i) { return outline.section(i / 120.0 - 0.5); },
+      [&](const Vec3& p) { return outline.is_open(p); });
+  add_floor(mesh, size);
+  add_cross_parts(mesh, size);
+  return mesh;
+}
+
+Mesh front_loader() {
+  Mesh mesh;
+  for (const double x : {-3.0, 1.7}) {
+    for (const double y : {-0.92, 0.92}) mesh.add_wheel({x, y, 0.82}, 0.82, 0.62);
+    mesh.add_box({x - 0.2, -0.6, 0.55}, {x + 0.2, 0.6, 1.0});
+  }
+  add_frame_and_cab(mesh);
+  add_bucket(mesh);
+  return mesh;
+}
 
 Mesh train_wagon() {
   Mesh mesh;
