@@ -806,14 +806,13 @@ def certainty(bench):
         for sigmas in all_sigmas:
             bench.keep({"vary": "place", "shape": shape.name, "errors": mix, "margin": margin,
                         "sigmas": sigmas}, lambda: of(sigmas))
-    program = verdicts.Program(clearway)
     for seed, (shape, mix, margin, sigmas) in enumerate(product(SHAPES.values(), ERRORS, margins, all_sigmas)):
         def asked():
             errors = ERRORS[mix]
             drawn = verdicts.Places(shape, errors, margin, places, np.random.default_rng([2, seed]))
             formulas = errors.margins(shape, sigmas)
             expected = verdicts.wrong(drawn.distances(), margin, formulas)
-            clear, conflict, told = program.ask(drawn, errors, sigmas)
+            clear, conflict, told = verdicts.ask(clearway, drawn, errors, sigmas)
             return {"places": places, "clear": int(clear.sum()), "conflict": int(conflict.sum()),
                     "margins": told, "formulas": formulas,
                     "differ": int((clear != expected[0]).sum() + (conflict != expected[1]).sum())}

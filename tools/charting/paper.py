@@ -208,7 +208,6 @@ DEFAULT_CELL_POINTS = 65536  # of `clearway convert`
 STEPS = (("plan and field", SKY, "...."), ("making the engine", PURPLE, "xxxx"),
          ("search: computing", BLUE, ""), ("search: only moving data", ORANGE, "////"))
 CELLS = "cells (c: chunks) read (right axis)"
-CELLS_STYLE = Style(GREEN, "D", "--", "")
 # Stages of the search, which overlap.
 STAGES = (("read", VERMILION, "v"), ("upload", GREEN, "^"), ("collect", BLACK, "x"))
 
@@ -236,8 +235,8 @@ def draw_grid(record):
     entries = {name: Patch(**bar_look(colour, hatch)) for name, colour, hatch in STEPS}
     for handle, name in zip(*axes[1, 0].get_legend_handles_labels()):
         entries[f"{name} (overlaps)"] = handle
-    if any(one.get_label() == CELLS for panel in sheet.figure.axes for one in panel.lines):
-        entries[CELLS] = CELLS_STYLE
+    entries |= {CELLS: one for panel in sheet.figure.axes for one in panel.lines
+                if one.get_label() == CELLS}
     legend_in(place, entries, 2)
     if chosen:
         sheet.say(f"a: the heuristic chose {chosen[0].runs[0]['grid_cell']:g} m.")
@@ -295,7 +294,7 @@ def draw_bars(sheet, axes, cases, cells):
 
 
 def draw_cells(right, x, cells, name):
-    right.plot(x, cells, markersize=4, label=CELLS, **look_of(CELLS_STYLE))
+    right.plot(x, cells, markersize=4, label=CELLS, **look_of(Style(GREEN, "D", "--", "")))
     right.set_yscale("log")
     # Between powers of ten, so that at least two are named.
     right.set_ylim(10 ** np.floor(np.log10(min(cells))),
