@@ -50,20 +50,19 @@ class Trial:
         self.folder.mkdir()
 
     def tried(self, words):
-        """What a command prints; None where it fails, and then `failure` says why."""
-        done = subprocess.run([self.program, *words.split()], cwd=self.folder, capture_output=True,
-                              text=True, check=False)
-        self.failure = f"exit code {done.returncode}: {done.stderr.strip()}"
+        """What a command prints; None where it fails, and then `failed` says why."""
+        done = self.failed = subprocess.run([self.program, *words.split()], cwd=self.folder,
+                                            capture_output=True, text=True, check=False)
         return done.stdout if done.returncode in (0, 1, 6) else None
 
     def call(self, words):
         printed = self.tried(words)
         if printed is None:
-            sys.exit(f"{words}: {self.failure}")
+            sys.exit(f"{words}: exit code {self.failed.returncode}: {self.failed.stderr}")
         return printed
 
     def refused(self, file):
-        print(f"{file.name}: refused: {self.failure.splitlines()[-1]}")
+        print(f"{file.name}: refused: {self.failed.stderr.strip().splitlines()[-1]}")
 
     def count(self, name, answer, of_question=True):
         """of_question: whether nothing is wrong with the question either, beside the scan."""
