@@ -815,12 +815,12 @@ def certainty(bench):
     all_sigmas, margins, sides = (2, 3, 4) if bench.size != "smoke" else (2,), (0, 0.1), (0.1, 0.2, 0.4)
     for shape, (mix, errors), margin in product(SHAPES.values(), ERRORS.items(), margins):
         @cache
-        def found():
+        def by_sigmas():
             return monte_carlo(shape, errors, margin, all_sigmas, trials, 1)
 
         for sigmas in all_sigmas:
             bench.keep({"vary": "place", "shape": shape.name, "errors": mix, "margin": margin,
-                        "sigmas": sigmas}, lambda: found()[sigmas])
+                        "sigmas": sigmas}, lambda: by_sigmas()[sigmas])
     for seed, (shape, mix, margin, sigmas) in enumerate(product(SHAPES.values(), ERRORS, margins, all_sigmas)):
         def asked():
             errors = ERRORS[mix]
