@@ -11,28 +11,27 @@ import argparse
 import sys
 from pathlib import Path
 
-from charting import (accuracy, certainty, check, engines, grid, numbers, peers, points, scaling,
-                      section, seen, share, stability, surfaces, table, threads)
-from charting.record import read_record
+from charting import certainty, costs, methods, paper, stability
+from charting.record import markdown, read_record
 
-FIGURES = (table, engines, threads, grid, points, accuracy, stability, scaling, surfaces, seen,
-           section, certainty, check, peers, share)
-
-
-def files_in(folder):
-    """The JSON files of a folder, compressed ones too."""
-    return sorted([*folder.glob("*.json"), *folder.glob("*.json.gz")])
-
-
-def name_of(figure):
-    return figure.__name__.removeprefix("charting.")
+# What draws each figure, from the record of that name unless another is named, and its numbers as
+# text unless the usual table has them.
+FIGURES = {
+    "table": (paper.draw_table, {"text": paper.table_markdown}),
+    "engines": (paper.draw_engines, {"record": "table"}), "threads": (paper.draw_threads, {}),
+    "grid": (paper.draw_grid, {}), "points": (paper.draw_points, {"text": paper.points_markdown}),
+    "accuracy": (methods.draw_accuracy, {}), "stability": (stability.draw, {}),
+    "scaling": (costs.draw_scaling, {}), "surfaces": (methods.draw_surfaces, {}),
+    "seen": (costs.draw_seen, {}), "section": (costs.draw_section, {}),
+    "certainty": (certainty.draw, {}), "check": (costs.draw_check, {}),
+    "peers": (methods.draw_peers, {"text": methods.peers_markdown}),
+    "share": (costs.draw_share, {"text": costs.share_markdown})}
 
 
 def figures_of(record):
-    """The figures that an experiment's record is drawn as."""
-    experiment = record.experiment
-    return [figure for figure in FIGURES
-            if experiment == ("table" if figure is engines else name_of(figure))]
+    """Name, function and text of the figures that an experiment's record is drawn as."""
+    return [(name, draw, how.get("text", markdown)) for name, (draw, how) in FIGURES.items()
+            if record.experiment == how.get("record", name)]
 
 
 def main():
@@ -43,7 +42,8 @@ def main():
                         help="folder of the charts (default: the same)")
     options = parser.parse_args()
     output = options.output or options.folder
-    records = [read_record(path) for path in files_in(options.folder)]
+    files = sorted([*options.folder.glob("*.json"), *options.folder.glob("*.json.gz")])
+    records = [read_record(path) for path in files]
     records = [record for record in records if record and figures_of(record)]
     if not records:
         sys.exit(f"{options.folder}: no JSON file of an experiment")
@@ -53,12 +53,12 @@ def main():
             print(f"{record.path}: has no cases yet", file=sys.stderr)
             continue
         beside = [other for other in records if other.experiment == "table"]
-        for figure in figures_of(record):
-            sheet = figure.draw(record, *beside[:1]) if figure is peers else figure.draw(record)
-            for path in sheet.save(output, name_of(figure)):
+        for name, draw, text_of in figures_of(record):
+            sheet = draw(record, *beside[:1]) if draw is methods.draw_peers else draw(record)
+            for path in sheet.save(output, name):
                 print(path)
-            text = output / f"{name_of(figure)}.md"
-            text.write_text(getattr(figure, "markdown", numbers.markdown)(record))
+            text = output / f"{name}.md"
+            text.write_text(text_of(record))
             print(text)
 
 

@@ -29,7 +29,7 @@ import sys
 from pathlib import Path
 from urllib.parse import unquote
 
-from prose import codes, markdown, names, terms
+from prose import markdown, names, terms
 from prose.program import OPTION, Program
 
 OUTPUT_LANGUAGES = {"text", "json", "csv", "console"}
@@ -39,79 +39,69 @@ COMMAND_LINE = "docs/guide/command-line.md"
 ENDINGS = ("", ".hpp", ".cpp", ".cu", ".py", ".sh")
 
 
+def files_of(root):
+    """All files that git does not ignore; where git knows none of them, all."""
+    command = ["git", "-C", str(root), "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
+    listed = subprocess.run(command, capture_output=True, text=True, check=False).stdout
+    paths = (root / name for name in listed.split("\0") if name) if listed else root.rglob("*")
+    return {path for path in paths if path.is_file()}
+
+
 class Checker:
     def __init__(self, root, programs):
         self.root, self.programs = root.resolve(), {p.name: p for p in programs}
-        self.problems = []
-        self.files = self._files()
+        self.files = files_of(self.root)
         self.blocks = {path: markdown.parse(path.read_text(encoding="utf-8"))
                        for path in sorted(self.files) if path.suffix == ".md"}
         self.described = {"": set()}  # in docs/guide, below each heading that is a command; "": all
 
-    def _files(self):
-        """All files that git does not ignore; where git knows none of them, all."""
-        command = ["git", "-C", str(self.root), "ls-files", "--cached", "--others",
-                   "--exclude-standard", "-z"]
-        listed = subprocess.run(command, capture_output=True, text=True, check=False)
-        if listed.returncode == 0 and listed.stdout:
-            paths = (self.root / name for name in listed.stdout.split("\0") if name)
-        else:
-            paths = self.root.rglob("*")
-        return {path for path in paths if path.is_file()}
-
-    def run(self):
+    def problems(self):
         glossary = terms.Glossary(self.root)
-        self.problems.extend(glossary.problems())
+        yield from glossary.problems()
         sources = names.Names(self.root, self.files)
-        self.problems.extend(sources.incomplete())
+        yield from sources.incomplete()
         for path, blocks in self.blocks.items():
             name = str(path.relative_to(self.root))
-            self._check_links(path, name, blocks)
+            yield from self._broken_links(path, name, blocks)
             if name != "CHANGELOG.md":  # which names files of earlier versions too
-                self._check_source_paths(name, blocks)
-                self.problems.extend(sources.unknown(name, blocks))
+                yield from self._missing_paths(name, blocks)
+                yield from sources.unknown(name, blocks)
             if name == "README.md" or name.startswith("docs/guide/"):
                 for block in blocks:
                     if block.kind != "code":
-                        self.problems.extend(glossary.not_used(name, block.line, block.text))
-                self._check_options(name, blocks)
+                        yield from glossary.not_used(name, block.line, block.text)
+                yield from self._wrong_options(name, blocks)
         for program in self.programs.values():
             for where, text in program.prose:
-                self.problems.extend(glossary.not_used(where, 0, text))
-            self._check_described(program)
-            self._check_table(program)
-        self.problems.extend(codes.problems(self.root, self.files))
+                yield from glossary.not_used(where, 0, text)
+            yield from self._not_described(program)
+            yield from self._not_in_table(program)
+        yield from names.code_problems(self.root, self.files)
 
-    def _check_links(self, path, name, blocks):
+    def _broken_links(self, path, name, blocks):
         for block in blocks:
-            for target in markdown.link_targets(block):
-                if not re.match(r"([a-z][a-z0-9+.-]*:|//)", target):
-                    self._check_target(path, f"{name}:{block.line}", unquote(target))
+            for link in markdown.link_targets(block):
+                if re.match(r"([a-z][a-z0-9+.-]*:|//)", link):
+                    continue
+                target = unquote(link)
+                file, _, anchor = target.partition("#")
+                base = self.root if file.startswith("/") else path.parent
+                found = (base / file.lstrip("/")).resolve() if file else path
+                if found not in self.files and not any(found in known.parents for known in self.files):
+                    yield f"{name}:{block.line}: broken link: {target}: no such file"
+                elif anchor and found in self.blocks and (
+                        anchor not in markdown.anchors(self.blocks[found])):
+                    yield f"{name}:{block.line}: broken link: {target}: no such heading"
 
-    def _check_source_paths(self, name, blocks):
+    def _missing_paths(self, name, blocks):
         for block in blocks:
-            if block.kind == "code":
-                continue
-            for span in markdown.CODE_SPAN.finditer(block.text):
-                if (SOURCE_PATH.fullmatch(span[2]) and "NAME" not in span[2]
-                        and not self._is_source(span[2])):
-                    self.problems.append(f"{name}:{block.line}: {span[2]}: no such file or folder")
+            for _, code in markdown.code_spans(block):
+                if SOURCE_PATH.fullmatch(code) and "NAME" not in code and not (
+                        (self.root / code).is_dir() or
+                        any(self.root / (code + ending) in self.files for ending in ENDINGS)):
+                    yield f"{name}:{block.line}: {code}: no such file or folder"
 
-    def _is_source(self, path):
-        return (self.root / path).is_dir() or any(
-            self.root / (path + ending) in self.files for ending in ENDINGS)
-
-    def _check_target(self, path, where, target):
-        file, _, anchor = target.partition("#")
-        base = self.root if file.startswith("/") else path.parent
-        found = (base / file.lstrip("/")).resolve() if file else path
-        if found not in self.files and not any(found in known.parents for known in self.files):
-            self.problems.append(f"{where}: broken link: {target}: no such file")
-        elif anchor and found in self.blocks:
-            if anchor not in markdown.anchors(self.blocks[found]):
-                self.problems.append(f"{where}: broken link: {target}: no such heading")
-
-    def _check_options(self, name, blocks):
+    def _wrong_options(self, name, blocks):
         heading = ""
         for block in blocks:
             if block.kind == "heading":
@@ -119,33 +109,31 @@ class Checker:
             if block.kind == "code":
                 is_text = block.language in OUTPUT_LANGUAGES
                 lines = block.text.replace("\\\n", "  ").splitlines()
-                for offset, line in enumerate(lines):
-                    self._check_code(f"{name}:{block.line + offset}", heading, line, is_text)
-                continue
-            for span in markdown.CODE_SPAN.finditer(block.text):
-                line = block.line + block.text.count("\n", 0, span.start())
-                self._check_code(f"{name}:{line}", heading, span[2], False)
-            rest = markdown.CODE_SPAN.sub("", block.text)
-            self._check_code(f"{name}:{block.line}", heading, rest, True)
+                parts = [(block.line + i, line, is_text) for i, line in enumerate(lines)]
+            else:
+                parts = [(line, code, False) for line, code in markdown.code_spans(block)]
+                parts.append((block.line, markdown.CODE_SPAN.sub("", block.text), True))
+            for line, code, is_text in parts:
+                yield from self._wrong_code(f"{name}:{line}", heading, code, is_text)
 
-    def _check_code(self, where, heading, code, is_text):
+    def _wrong_code(self, where, heading, code, is_text):
         """One line of code, each command of a pipe by itself; or a line of text."""
         parts = re.split(r"\||&&|;", re.sub(r"(^|\s)#\s.*", "", code))
         for part in [code] if is_text else parts:
-            options = OPTION.findall(part)
+            options, words = OPTION.findall(part), [] if is_text else part.split()
+            while words and (words[0] in PREFIXES or re.match(r"[A-Z_]+=", words[0])):
+                words = words[1:]
             if where.startswith("docs/guide/"):
                 self.described[""].update(options)
                 self.described.setdefault(heading, set()).update(options)
-            if not is_text:
-                self._check_command(where, part.split())
-            known = self._known_options([] if is_text else part.split())
+            yield from self._wrong_command(where, words)
+            known = self._known_options(words)
             for option in options:
                 if known is not None and option not in known:
-                    self.problems.append(f"{where}: {option}: no such option: {part.strip()}")
+                    yield f"{where}: {option}: no such option: {part.strip()}"
 
-    def _check_command(self, where, words):
+    def _wrong_command(self, where, words):
         """Each word that names a command of the program, down to its last subcommand."""
-        words = self._without_prefixes(words)
         program = self.programs.get(Path(words[0]).name) if words else None
         command = program.name if program else ""
         for word in words[1:] if program else []:
@@ -153,19 +141,12 @@ class Checker:
             if not below or not re.fullmatch(r"[a-z][a-z-]*", word):
                 return
             if word not in below:
-                self.problems.append(f"{where}: {command} {word}: no such command")
+                yield f"{where}: {command} {word}: no such command"
                 return
             command = f"{command} {word}"
 
-    @staticmethod
-    def _without_prefixes(words):
-        while words and (words[0] in PREFIXES or re.match(r"[A-Z_]+=", words[0])):
-            words = words[1:]
-        return words
-
     def _known_options(self, words):
         """What may stand on a line of these words; None: another program's options."""
-        words = self._without_prefixes(words)
         if not words or not re.fullmatch(r"[\w./+][\w./+-]*", words[0]):
             return set().union(*(program.all_options() for program in self.programs.values()))
         program = self.programs.get(Path(words[0]).name)
@@ -176,7 +157,7 @@ class Checker:
                 return program.options_of([program.name, *words])
         return None
 
-    def _check_described(self, program):
+    def _not_described(self, program):
         for command, options in program.options.items():
             words = command.split()
             while words and " ".join(words) not in self.described:
@@ -186,26 +167,17 @@ class Checker:
                 if option in ("--help", "--help-all") and option in self.described[""]:
                     continue
                 place = f"below the heading {heading}" if heading else "anywhere"
-                self.problems.append(
-                    f"docs/guide: {option} of {command}: not described {place}")
+                yield f"docs/guide: {option} of {command}: not described {place}"
 
-    def _check_table(self, program):
+    def _not_in_table(self, program):
         """Every command of the program whose page this is stands in the first table of the page."""
         rows, last = "", None
         for block in self.blocks.get(self.root / COMMAND_LINE, []):
             if block.kind == "table" and last in (None, block.line - 1):
                 rows, last = f"{rows}{block.text}\n", block.line
-        if f"`{program.name} " not in rows:
-            return
-        for command in program.subcommands[program.name]:
+        for command in program.subcommands[program.name] if f"`{program.name} " in rows else ():
             if f"| `{program.name} {command}` |" not in rows:
-                self.problems.append(
-                    f"{COMMAND_LINE}: {program.name} {command} is not in the first table")
-
-    def report(self):
-        for problem in sorted(set(self.problems)):
-            print(problem)
-        return 1 if self.problems else 0
+                yield f"{COMMAND_LINE}: {program.name} {command} is not in the first table"
 
 
 def main():
@@ -215,9 +187,10 @@ def main():
     parser.add_argument("--root", type=Path, default=Path(__file__).resolve().parents[1],
                         help="the repository (default: that of this script)")
     options = parser.parse_args()
-    checker = Checker(options.root, [Program(path) for path in options.programs])
-    checker.run()
-    return checker.report()
+    problems = set(Checker(options.root, [Program(path) for path in options.programs]).problems())
+    for problem in sorted(problems):
+        print(problem)
+    return 1 if problems else 0
 
 
 if __name__ == "__main__":

@@ -10,26 +10,17 @@
 # Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
 experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers certainty)
-force=no
-only=
-while :; do
-  case "${1:-}" in
+force=no only= size=small
+while [ $# -gt 1 ]; do
+  case $1 in
     --force) force=yes ;;
-    --only)
-      only=,${2:-},
-      shift
-      ;;
+    --only) only=,$2, && shift ;;
+    small | full) size=$1 ;;
     *) break ;;
   esac
   shift
 done
-size=small
-case "${1:-}" in small | full)
-  size=$1
-  shift
-  ;;
-esac
-if [ $# -ne 1 ] || [ "${1#-}" != "$1" ]; then
+if [ $# -ne 1 ] || [[ $1 =~ ^(-.*|small|full)$ ]]; then
   echo "usage: tools/evaluate.sh [--force] [--only NAME,...] [small|full] FOLDER" >&2
   exit 2
 fi

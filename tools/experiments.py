@@ -13,6 +13,7 @@ import fcntl
 import hashlib
 import json
 import os
+import platform
 import re
 import shutil
 import signal
@@ -20,8 +21,9 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections import namedtuple
+from collections import Counter, namedtuple
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from itertools import product
 from pathlib import Path
 
@@ -30,7 +32,6 @@ import numpy as np
 
 from bench import variants
 from trials import verdicts
-from trials.header import header
 from trials.scans import Scene
 from trials.seen_space import Ground, look
 from trials.verdicts import ERRORS, SHAPES, monte_carlo
@@ -97,12 +98,41 @@ def near_boundary(truth):
     return {"environment_points": points, "within_ulps": within.tolist()}
 
 
+def header(experiment, program, size, gpus):
+    """What a record says of the machine and the program."""
+    processors = re.findall(r"^model name\s*: (.*)", Path("/proc/cpuinfo").read_text(), re.M)
+    version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True).stdout.strip()
+    commit = subprocess.run(["git", "-C", Path(__file__).parent, "describe", "--always", "--dirty",
+                             "--abbrev=12", "--exclude=*"], capture_output=True, text=True).stdout.strip()
+    return {"experiment": experiment, "size": size,
+            "machine": {"processor": processors[0].strip() if processors else platform.machine(),
+                        "cores": len(os.sched_getaffinity(0)),
+                        "memory_bytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGESIZE"),
+                        "gpus": gpus, "system": platform.freedesktop_os_release()["PRETTY_NAME"]},
+            "clearway": {"version": version, "commit": commit or "unknown",
+                         "program": hashlib.sha256(program.read_bytes()).hexdigest()[:12]}}
+
+
 class Failed(Exception):
     """A run that failed; `finding` is what a record keeps of it."""
 
     def __init__(self, command, finding, log):
         super().__init__(f"{' '.join(map(str, command))}: {log.strip()}")
         self.finding, self.log = finding, log
+
+    def counts(self, refusal):
+        """Whether it is a finding: the limit was exceeded, or the log has the pattern."""
+        return "limit" in self.finding or (refusal is not None and re.search(refusal, self.log))
+
+
+def attempted(findings, refusal):
+    """What a function finds, or how it failed where that is a finding."""
+    try:
+        return findings()
+    except Failed as failed:
+        if failed.counts(refusal):
+            return {"failed": failed.finding}
+        raise
 
 
 class Bench:
@@ -121,8 +151,6 @@ class Bench:
         self.wrong = []
         self.lock_work()
         record = header(experiment, options.programs / "clearway", self.size, gpus)
-        program = (options.programs / "clearway").read_bytes()
-        record["clearway"]["program"] = hashlib.sha256(program).hexdigest()[:12]
         record["parameters"] = {
             "device": self.here, "scenes": options.scenes, **{
                 name: getattr(options, name) for name in ("repetitions", "memory", "device_memory", "limit")},
@@ -351,7 +379,7 @@ class Bench:
                 if judge:
                     case["findings"] = judge(result)
             except Failed as failed:
-                if "limit" not in failed.finding and not (refusal and re.search(refusal, failed.log)):
+                if not failed.counts(refusal):
                     raise
                 print(f"warning: {key}: counted as failed: {failed}", file=sys.stderr)
                 case["failed"] = failed.finding
@@ -538,15 +566,10 @@ def sparse(bench, fast, forward):
         def converted():
             las = bench.work / "stretched.las"
             variants.stretch_environment(tunnel.environment, las, factor)
-            try:
-                _, wall, _, peak = bench.execute(
-                    "clearway", "convert", las, "-o", store, "--memory", bench.options.memory, "--force",
-                    *(["--layout", f"regular:{side}", "--cell-points", chunk] if side else []),
-                    limit=bench.options.limit)
-            except Failed as failed:
-                if "limit" not in failed.finding and not re.search(MEMORY, failed.log):
-                    raise
-                return {"failed": failed.finding}
+            _, wall, _, peak = bench.execute(
+                "clearway", "convert", las, "-o", store, "--memory", bench.options.memory, "--force",
+                *(["--layout", f"regular:{side}", "--cell-points", chunk] if side else []),
+                limit=bench.options.limit)
             return {"convert_seconds": wall, "convert_peak_bytes": peak,
                     "store_bytes": store.stat().st_size}
 
@@ -554,7 +577,7 @@ def sparse(bench, fast, forward):
         known = bench.find("/".join(map(str, parameters.values())))
         if known and ("failed" in known["findings"] or all(map(bench.find, keys))):
             continue
-        found = converted()
+        found = attempted(converted, MEMORY)
         for engine in (fast, forward) if "failed" not in found else ():
             bench.measure({**parameters, "engine": engine.name}, tunnel._replace(store=store),
                           engine.options, once=True, refusal=MEMORY)
@@ -583,17 +606,14 @@ def scaling(bench):
 def share(bench):
     """What share of a scene a search touches, and what touching more than that would cost."""
     for scene, files in bench.scenes():
-        found = {}
-
-        def of(way):
-            if not found:
-                found.update(json.loads(bench.execute(
-                    "clearway-bench", "share", "--env", files.store, "--model", files.model, "--trajectory",
-                    files.trajectory, "--radius", RADIUS, "--repetitions", bench.options.repetitions)[0]))
-            return found[way]
+        @cache
+        def found():
+            return json.loads(bench.execute(
+                "clearway-bench", "share", "--env", files.store, "--model", files.model, "--trajectory",
+                files.trajectory, "--radius", RADIUS, "--repetitions", bench.options.repetitions)[0])
 
         for way in ("as it is", "all cells", "whole field", "poses one by one"):
-            bench.keep({"scene": scene, "way": way}, lambda: of(way))
+            bench.keep({"scene": scene, "way": way}, lambda: found()[way])
         if bench.cuda:
             bench.measure({"scene": scene, "way": "GPU"}, files, bench.engine("sweep cuda").options)
 
@@ -700,15 +720,12 @@ def peers(bench):
             # Where all poses take longer than a third of the limit, every n-th is searched.
             words = ["--env", files.store, "--model", files.model, "--trajectory", files.trajectory,
                      "--radius", RADIUS, "--threads", bench.cores, "--limit", bench.options.limit / 3]
-            try:
-                out, *_ = bench.execute(f"peer_{name}", *words, *(["--cell", cell] if cell else []),
-                                        limit=10 * bench.options.limit)  # with its preparation
-                return json.loads(out)
-            except Failed as failed:
-                return {"failed": failed.finding}
+            out, *_ = bench.execute(f"peer_{name}", *words, *(["--cell", cell] if cell else []),
+                                    limit=10 * bench.options.limit)  # with its preparation
+            return json.loads(out)
 
         bench.keep({"scene": scene, "peer": name, "threads": bench.cores, "radius": RADIUS,
-                    **({"cell": cell} if cell else {})}, measured)
+                    **({"cell": cell} if cell else {})}, lambda: attempted(measured, ""))
 
 
 def check(bench):
@@ -795,25 +812,22 @@ def certainty(bench):
     import clearway  # PYTHONPATH=build/release/python
     trials, places, scenes, rays = {"smoke": (20_000, 1_000, 1, 20_000), "small": (1_000_000, 20_000, 4, 100_000),
                                     "full": (10_000_000, 100_000, 16, 400_000)}[bench.size]
-    all_sigmas, margins = (2, 3, 4) if bench.size != "smoke" else (2,), (0, 0.1)
+    all_sigmas, margins, sides = (2, 3, 4) if bench.size != "smoke" else (2,), (0, 0.1), (0.1, 0.2, 0.4)
     for shape, (mix, errors), margin in product(SHAPES.values(), ERRORS.items(), margins):
-        found = {}
-
-        def of(sigmas):
-            found.update(found or monte_carlo(shape, errors, margin, all_sigmas, trials, 1))
-            return found[sigmas]
+        @cache
+        def by_sigmas():
+            return monte_carlo(shape, errors, margin, all_sigmas, trials, 1)
 
         for sigmas in all_sigmas:
             bench.keep({"vary": "place", "shape": shape.name, "errors": mix, "margin": margin,
-                        "sigmas": sigmas}, lambda: of(sigmas))
-    program = verdicts.Program(clearway)
+                        "sigmas": sigmas}, lambda: by_sigmas()[sigmas])
     for seed, (shape, mix, margin, sigmas) in enumerate(product(SHAPES.values(), ERRORS, margins, all_sigmas)):
         def asked():
             errors = ERRORS[mix]
             drawn = verdicts.Places(shape, errors, margin, places, np.random.default_rng([2, seed]))
             formulas = errors.margins(shape, sigmas)
             expected = verdicts.wrong(drawn.distances(), margin, formulas)
-            clear, conflict, told = program.ask(drawn, errors, sigmas)
+            clear, conflict, told = verdicts.ask(clearway, drawn, errors, sigmas)
             return {"places": places, "clear": int(clear.sum()), "conflict": int(conflict.sum()),
                     "margins": told, "formulas": formulas,
                     "differ": int((clear != expected[0]).sum() + (conflict != expected[1]).sum())}
@@ -827,22 +841,22 @@ def certainty(bench):
     # The third and fourth normal noise are a sixteenth and a twelfth of 0.2 m.
     for kind, size in bench.some([("uniform", bound) for bound in (0.005, 0.02, 0.045)] + [
             ("normal", sigma) for sigma in (0.005, 0.0125, 0.2 / 12, 0.02, 0.05)]):
-        sums = {}
-
-        def of_side(side):
-            for seed in range(scenes if not sums else 0):
+        @cache
+        def sums():
+            of_side = {side: Counter() for side in sides}
+            for seed in range(scenes):
                 random = np.random.default_rng([3, seed])
                 with tempfile.TemporaryDirectory() as folder:
                     ground = Ground(bench.options.programs / "clearway", Path(folder),
                                     Scene(np.random.default_rng(seed)))
                     seen_of = look(ground, random, rays, lambda n: random.uniform(-size, size, n)
-                                   if kind == "uniform" else random.normal(0, size, n), (0.1, 0.2, 0.4))
-                for of, counts in seen_of.items():
-                    sums[of] = {name: sums.get(of, {}).get(name, 0) + count for name, count in counts.items()}
-            return sums[side]
+                                   if kind == "uniform" else random.normal(0, size, n), sides)
+                for side, counts in seen_of.items():
+                    of_side[side].update(counts)
+            return of_side
 
-        for side in (0.1, 0.2, 0.4):
-            bench.keep({"vary": "noise", "noise": kind, "size": size, "side": side}, lambda: of_side(side))
+        for side in sides:
+            bench.keep({"vary": "noise", "noise": kind, "size": size, "side": side}, lambda: sums()[side])
 
 
 # Whether an experiment takes --scenes, and a query of the user's.

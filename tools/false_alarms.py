@@ -17,9 +17,11 @@ import argparse
 import collections
 import csv
 import json
+import shutil
 import subprocess
 import sys
 import tempfile
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -37,16 +39,30 @@ SEEDS = (1, 2, 3)
 
 
 class Trial:
-    def __init__(self, program):
-        self.program = Path(program).resolve()
+    """Asks the program in a folder that every scan or path has for itself."""
+
+    def __init__(self, program, folder):
+        self.program, self.folder = Path(program).resolve(), folder
         self.inputs, self.counts, self.doubts = 0, collections.Counter(), collections.Counter()
 
-    def call(self, folder, words):
-        done = subprocess.run([self.program, *words.split()], cwd=folder, capture_output=True,
-                              text=True, check=False)
-        if done.returncode not in (0, 1, 6):
-            sys.exit(f"{words}: exit code {done.returncode}: {done.stderr}")
-        return done.stdout
+    def begin(self):
+        shutil.rmtree(self.folder)
+        self.folder.mkdir()
+
+    def tried(self, words):
+        """What a command prints; None where it fails, and then `failed` says why."""
+        done = self.failed = subprocess.run([self.program, *words.split()], cwd=self.folder,
+                                            capture_output=True, text=True, check=False)
+        return done.stdout if done.returncode in (0, 1, 6) else None
+
+    def call(self, words):
+        printed = self.tried(words)
+        if printed is None:
+            sys.exit(f"{words}: exit code {self.failed.returncode}: {self.failed.stderr}")
+        return printed
+
+    def refused(self, file):
+        print(f"{file.name}: refused: {self.failed.stderr.strip().splitlines()[-1]}")
 
     def count(self, name, answer, of_question=True):
         """of_question: whether nothing is wrong with the question either, beside the scan."""
@@ -60,87 +76,74 @@ class Trial:
         print(f"{name}: {' '.join(codes) or 'no warning'}"
               + (f"; IN DOUBT: {' '.join(doubts)}" if doubts else ""), flush=True)
 
-    def scenes(self):
-        for kind, sizes in SCENES.items():
-            for seed in SEEDS:
-                with tempfile.TemporaryDirectory() as folder:
-                    self.scene(Path(folder), kind, f"{sizes} --seed {seed}", f"{kind} {seed}")
+    def run(self, name, words, **how):
+        self.count(name, self.call(f"run --env site.h5 {words} --json --force -o out.h5"), **how)
 
-    def scene(self, folder, kind, sizes, name):
-        self.call(folder, f"scene {kind} {sizes} -o .")
-        self.call(folder, "convert environment.las -o site.h5")
-        lines = (folder / "trajectory.txt").read_text().splitlines(keepends=True)
-        (folder / "few.txt").write_text("".join(lines[::10]))
-        (folder / "vehicle.json").write_text(json.dumps(
-            {"bodies": [{"name": "whole", "model": "model.ply", "at": 0}]}))
-        facts = json.loads(self.call(folder, "model model.ply --json"))
-        cut = facts["bounds"]["lo"][2] + 0.3
-        for variant, words in VARIANTS.items():
-            words = words.format(cut=cut)
-            path = "" if "--trajectory" in words else "--trajectory trajectory.txt"
-            radius = "" if "--radius" in words else "--radius 0.1"
-            self.count(f"{name}, {variant}", self.call(
-                folder, f"run --env site.h5 {path} {radius} {words} --json --force -o out.h5"))
+    def scenes(self):
+        for (kind, sizes), seed in product(SCENES.items(), SEEDS):
+            self.begin()
+            self.call(f"scene {kind} {sizes} --seed {seed} -o .")
+            self.call("convert environment.las -o site.h5")
+            lines = (self.folder / "trajectory.txt").read_text().splitlines(keepends=True)
+            (self.folder / "few.txt").write_text("".join(lines[::10]))
+            (self.folder / "vehicle.json").write_text(json.dumps(
+                {"bodies": [{"name": "whole", "model": "model.ply", "at": 0}]}))
+            facts = json.loads(self.call("model model.ply --json"))
+            for variant, words in VARIANTS.items():
+                words = words.format(cut=facts["bounds"]["lo"][2] + 0.3)
+                path = "" if "--trajectory" in words else "--trajectory trajectory.txt"
+                radius = "" if "--radius" in words else "--radius 0.1"
+                self.run(f"{kind} {seed}, {variant}", f"{path} {radius} {words}")
 
     def street(self, data):
-        with tempfile.TemporaryDirectory() as folder:
-            self.call(folder, f"convert {data}/street.las -o site.h5")
-            for variant, words in {"beetle": "", "beetle, floor": "--floor 0.3",
-                                   "beetle, between": "--between-poses"}.items():
-                self.count(f"street, {variant}", self.call(
-                    folder, f"run --env site.h5 --model {data}/beetle.ply --trajectory "
-                    f"{data}/trajectory.txt --radius 0.1 {words} --json --force -o out.h5"))
+        self.begin()
+        self.call(f"convert {data}/street.las -o site.h5")
+        for variant, words in {"beetle": "", "beetle, floor": "--floor 0.3",
+                               "beetle, between": "--between-poses"}.items():
+            self.run(f"street, {variant}", f"--model {data}/beetle.ply --trajectory "
+                     f"{data}/trajectory.txt --radius 0.1 {words}")
 
     def formats(self, data):
         for file in sorted(data.iterdir()):
-            with tempfile.TemporaryDirectory() as folder:
-                done = subprocess.run([self.program, "convert", file, "--json", "-o", "site.h5"],
-                                      cwd=folder, capture_output=True, text=True, check=False)
-                if done.returncode != 0:
-                    print(f"{file.name}: refused: {done.stderr.strip().splitlines()[-1]}")
-                    continue
-                made = json.loads(done.stdout)
-                if made["points"] == 0:
-                    continue
-                x, y, z = np.mean([made["box"]["lo"], made["box"]["hi"]], axis=0)
-                (Path(folder) / "path.txt").write_text(
-                    "".join(f"1 0 0 {x + 0.1 * i} 0 1 0 {y} 0 0 1 {z}\n" for i in range(20)))
-                self.count(file.name, self.call(
-                    folder, "run --env site.h5 --model box:4,2,1.5 --trajectory path.txt "
-                    "--radius 0.1 --json -o out.h5"), of_question=False)
+            self.begin()
+            made = self.tried(f"convert {file} --json -o site.h5")
+            if made is None:
+                self.refused(file)
+                continue
+            made = json.loads(made)
+            if made["points"] == 0:
+                continue
+            x, y, z = np.mean([made["box"]["lo"], made["box"]["hi"]], axis=0)
+            (self.folder / "path.txt").write_text(
+                "".join(f"1 0 0 {x + 0.1 * i} 0 1 0 {y} 0 0 1 {z}\n" for i in range(20)))
+            self.run(file.name, "--model box:4,2,1.5 --trajectory path.txt --radius 0.1",
+                     of_question=False)
 
     def trajectories(self, data):
         for file in sorted(data.iterdir()):
-            with tempfile.TemporaryDirectory() as folder:
-                info = json.loads(self.call(folder, f"trajectory info {file} --json"))
-                self.count(f"{file.name}, info", json.dumps(info))
-                self.call(folder, f"trajectory follow {file} --at 0 -o path.csv")
-                with open(Path(folder) / "path.csv", encoding="utf-8", newline="") as table:
-                    columns = [name.split()[0] for name in next(csv.reader(table))]
-                    positions = np.loadtxt(table, delimiter=",",
-                                           usecols=[columns.index(axis) for axis in "xyz"])[::10]
-                around = np.random.default_rng(1).uniform(-4, 4, (len(positions), 50, 3))
-                np.savetxt(Path(folder) / "scan.xyz",
-                           (positions[:, None] + around).reshape(-1, 3), "%.3f")
-                self.call(folder, "convert scan.xyz --unit m -o site.h5")
-                self.count(f"{file.name}, run", self.call(
-                    folder, f"run --env site.h5 --model box:1,0.5,0.5 --trajectory {file} "
-                    "--radius 0.05 --first-pose --allow-non-rigid --json -o out.h5"))
+            self.begin()
+            self.count(f"{file.name}, info", self.call(f"trajectory info {file} --json"))
+            self.call(f"trajectory follow {file} --at 0 -o path.csv")
+            with open(self.folder / "path.csv", encoding="utf-8", newline="") as table:
+                columns = [name.split()[0] for name in next(csv.reader(table))]
+                positions = np.loadtxt(table, delimiter=",",
+                                       usecols=[columns.index(axis) for axis in "xyz"])[::10]
+            around = np.random.default_rng(1).uniform(-4, 4, (len(positions), 50, 3))
+            np.savetxt(self.folder / "scan.xyz", (positions[:, None] + around).reshape(-1, 3), "%.3f")
+            self.call("convert scan.xyz --unit m -o site.h5")
+            self.run(f"{file.name}, run", f"--model box:1,0.5,0.5 --trajectory {file} "
+                     "--radius 0.05 --first-pose --allow-non-rigid")
 
     def alignments(self, data):
         for file in sorted(f for f in data.iterdir() if f.suffix.lower() == ".xml"):
-            with tempfile.TemporaryDirectory() as folder:
-                for height in ("", "--height 0"):
-                    words = f"trajectory alignment {file} --json {height} --force -o path.csv"
-                    done = subprocess.run([self.program, *words.split()], cwd=folder,
-                                          capture_output=True, text=True, check=False)
-                    if done.returncode == 0:
-                        self.count(file.name, done.stdout)
-                        self.count(f"{file.name}, info", self.call(
-                            folder, "trajectory info path.csv --json"))
-                        break
-                else:
-                    print(f"{file.name}: refused: {done.stderr.strip().splitlines()[-1]}")
+            self.begin()
+            words = f"trajectory alignment {file} --json --force -o path.csv"
+            made = self.tried(words) or self.tried(words + " --height 0")
+            if made is None:
+                self.refused(file)
+                continue
+            self.count(file.name, made)
+            self.count(f"{file.name}, info", self.call("trajectory info path.csv --json"))
 
 
 def main():
@@ -151,15 +154,14 @@ def main():
     parser.add_argument("--data-only", action="store_true", help="leave out the scenes")
     parser.add_argument("--none", default="", help="codes that must not come, with commas between")
     options = parser.parse_args()
-    trial = Trial(options.program)
-    if not options.data_only:
-        trial.scenes()
-    if options.data:
-        data = options.data.resolve()
-        trial.street(data / "street")
-        trial.trajectories(data / "trajectories")
-        trial.alignments(data / "alignments")
-        trial.formats(data / "formats")
+    with tempfile.TemporaryDirectory() as folder:
+        trial = Trial(options.program, Path(folder) / "trial")
+        trial.folder.mkdir()
+        if not options.data_only:
+            trial.scenes()
+        for part in (trial.street, trial.trajectories, trial.alignments, trial.formats):
+            if options.data:
+                part(options.data.resolve() / part.__name__)
     watched = [code for code in options.none.split(",") if code]
     print(f"\n| code | of {trial.inputs} inputs | in doubt |\n|---|---|---|")
     for code in sorted(set(trial.counts) | set(watched)):

@@ -11,7 +11,7 @@ import re
 import sys
 from pathlib import Path
 
-from prose.program import Program
+from prose.program import Entry, Program
 
 PAGED = {"clearway"}  # whose commands have pages of their own
 COMMAND_LINE = Path(__file__).resolve().parents[1] / "docs" / "guide" / "command-line.md"
@@ -28,29 +28,26 @@ def escaped(text):
 def exit_codes():
     """[(code, meaning)] of the guide's table."""
     section = COMMAND_LINE.read_text(encoding="utf-8").split("## Exit codes\n")[1].split("\n##")[0]
-    rows = re.findall(r"^\| (\S+) \| (.*?) \|", section, re.M)
-    return [(code, meaning.replace("`", "")) for code, meaning in rows
-            if code not in ("code", "---") and not code.startswith("-")]
+    rows = re.findall(r"^\| (\d|other) \| (.*?) \|", section, re.M)
+    return [(code, meaning.replace("`", "")) for code, meaning in rows]
 
 
 def option(name, text):
     """The entry of an option or argument, from what the help has on its left and right side."""
-    flags, _, rest = name.partition(" ")
-    notes = [text.rstrip(".")] if text else []
-    if excluded := re.search(r"\bExcludes: (.*)", rest):
-        notes.append("Not with " + excluded[1].replace(" ", " or "))
-    if choices := re.search(r":\{([^}]*)\}", rest):
-        notes.append("One of " + choices[1].replace(",", ", "))
-    if limits := re.search(r" in \[(\S+) - (\S+)\]", rest):
-        notes.append(f"From {limits[1]} to {limits[2]}")
-    if default := re.search(r"=(\S+)", rest):
-        notes.append("Default: " + default[1])
-    if re.search(r"\bREQUIRED\b", rest):
+    entry, notes = Entry(name), [text.rstrip(".")] if text else []
+    if entry.excluded:
+        notes.append("Not with " + " or ".join(entry.excluded))
+    if entry.choices:
+        notes.append("One of " + ", ".join(entry.choices))
+    if entry.limits:
+        notes.append("From {} to {}".format(*entry.limits))
+    if entry.default:
+        notes.append("Default: " + entry.default)
+    if entry.required:
         notes.append("Required")
-    value = re.match(r"(?!REQUIRED|Excludes:)[^\s:={]+", rest)
-    head = ", ".join(rf"\fB{escaped(flag)}\fR" for flag in flags.split(","))
-    if value:
-        head += rf" \fI{escaped(value[0])}\fR"
+    head = ", ".join(rf"\fB{escaped(flag)}\fR" for flag in entry.flags.split(","))
+    if entry.value:
+        head += rf" \fI{escaped(entry.value)}\fR"
     return f".TP\n{head}\n" + escaped(". ".join(notes) + ".")
 
 
@@ -81,7 +78,7 @@ def body(program, command, level):
     _, more = description(program, command)
     entries = program.entries[command]
     takes = " ".join(name.split()[0] for section, name, _ in entries if section == "Positionals")
-    below = [name.split()[0] for section, name, _ in entries if section == "Subcommands"]
+    below = program.subcommands[command]
     synopsis = rf"\fB{escaped(command)}\fR [\fIOPTIONS\fR]" + \
         (r" \fICOMMAND\fR ..." if below else "") + (rf" \fI{takes}\fR" if takes else "")
     section = ".SH" if level == 0 else ".SS"

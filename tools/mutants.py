@@ -113,11 +113,23 @@ def room_of(path):
     return "engine" if room in ("core", "search", "cpu", "gpu", "stream") else room
 
 
+def git(*words):
+    return subprocess.run(["git", "-C", ROOT, *words], capture_output=True, text=True,
+                          check=True).stdout.strip()
+
+
+def put(folder, mutant, text):
+    """Writes the line of a mutant into the tree, and returns what it was."""
+    path = folder / "tree" / mutant["file"]
+    lines = path.read_text().split("\n")
+    was, lines[mutant["line"]] = lines[mutant["line"]], text
+    path.write_text("\n".join(lines))
+    return was
+
+
 def draw(folder, options):
-    tree = folder / "tree"
-    names = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True,
-                           check=True).stdout.split("\n")
-    for name in filter(None, names):
+    tree, names = folder / "tree", git("ls-files").split("\n")
+    for name in names:
         (tree / name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(ROOT / name, tree / name)
     places = []
@@ -133,15 +145,9 @@ def draw(folder, options):
                for name, number, changed in sorted(chosen)]
     for number, mutant in enumerate(mutants):
         mutant["text"] = mutant["text"].replace("@", str(number))
-    commit = subprocess.run(["git", "rev-parse", "HEAD"], cwd=ROOT, capture_output=True, text=True,
-                            check=True).stdout.strip()
-    for mutant in mutants:
-        lines = (tree / mutant["file"]).read_text().split("\n")
-        mutant["was"] = lines[mutant["line"]]
-        lines[mutant["line"]] = mutant["text"]
-        (tree / mutant["file"]).write_text("\n".join(lines))
+        mutant["was"] = put(folder, mutant, mutant["text"])
     (folder / "mutants.hpp").write_text(HEADER.replace("COUNT", str(len(mutants))))
-    save(folder, {"commit": commit, "seed": options.seed, "places": len(places),
+    save(folder, {"commit": git("rev-parse", "HEAD"), "seed": options.seed, "places": len(places),
                   "dropped": [], "mutants": mutants})
     print(f"{len(mutants)} of {len(places)} places")
 
@@ -157,7 +163,7 @@ def save(folder, drawn):
 def drop_what_fails(folder, drawn, log):
     """Restores the lines that the compiler names, or else all of the files that it names. Returns
     whether there were any."""
-    tree, dropped = folder / "tree", set(drawn["dropped"])
+    dropped = set(drawn["dropped"])
     named = {(Path(os.path.normpath(name)).name, int(line))
              for name, line in re.findall(r"([\w./-]+\.[ch]pp):(\d+)(?::\d+)?: (?:error|note|required)", log)}
     left = [(number, mutant) for number, mutant in enumerate(drawn["mutants"]) if number not in dropped]
@@ -168,9 +174,7 @@ def drop_what_fails(folder, drawn, log):
         found = [number for number, mutant in left if Path(mutant["file"]).name in files]
     for number in found:
         mutant = drawn["mutants"][number]
-        lines = (tree / mutant["file"]).read_text().split("\n")
-        lines[mutant["line"]] = mutant["was"]
-        (tree / mutant["file"]).write_text("\n".join(lines))
+        put(folder, mutant, mutant["was"])
         print(f"does not compile: {mutant['file']}:{mutant['line'] + 1}: {mutant['text'].strip()}")
     drawn["dropped"] += found
     save(folder, drawn)

@@ -14,7 +14,7 @@ import re
 import sys
 from pathlib import Path
 
-from prose.program import OPTION, Program
+from prose.program import OPTION, Entry, Program
 
 COMMANDS = re.compile(r"<!-- commands of (.*?) -->\n(.*?)<!-- end of commands -->", re.S)
 TABLE = re.compile(r"<!-- options of ([^:]*?)(?:: (.*?))? -->\n(.*?)<!-- end of options -->", re.S)
@@ -25,14 +25,12 @@ BASES = ("clearway run", "clearway convert", "clearway conflicts", "clearway rep
 ALWAYS_SHOWN = ("--force", "--json")
 
 
-def in_code(found, options):
-    """An option as a code span; that of another program with its name, as in `sbatch --array`."""
-    before = found[1] or ""
-    return f"{before}`{found[2]}`" if found[2] in options else f"`{before}{found[2]}`"
-
-
 def with_options_in_code(text, options):
-    return re.sub(rf"(\w+ )?({OPTION.pattern})", lambda found: in_code(found, options), text)
+    """Options as code spans; those of another program with its name, as in `sbatch --array`."""
+    def in_code(found):
+        before = found[1] or ""
+        return f"{before}`{found[2]}`" if found[2] in options else f"`{before}{found[2]}`"
+    return re.sub(rf"(\w+ )?({OPTION.pattern})", in_code, text)
 
 
 def commands(program):
@@ -47,39 +45,28 @@ def commands(program):
 
 def row(name, text, options):
     """A row of the table, from what the help has on its left and right side. options: of the program."""
-    flags, _, rest = name.partition(" ")
-    value = re.match(r"(?!REQUIRED|Excludes:|Needs:|\.\.\.)[^\s:={]+", rest)
-    text = text.replace("|", r"\|")
+    entry, text = Entry(name), text.replace("|", r"\|")
     usual = re.search(r"(?: \(default: ([^()]*(?:\([^()]*\))?[^()]*)\))", text)
-    given = re.search(r"=(\S+)", rest)
-    default = ("required" if re.search(r"\bREQUIRED\b", rest) else usual[1] if usual else
-               given[1] if given else "none" if value else "off")
+    default = ("required" if entry.required else usual[1] if usual else
+               entry.default or ("none" if entry.value else "off"))
     meaning = text.replace(usual[0], "") if usual else text
     if not re.match(r"[A-Z]{2}", meaning):
         meaning = meaning[:1].lower() + meaning[1:]
-    choices = re.search(r":\{([^}]*)\}", rest)
-    if choices is None and (choices := re.search(r": ([\w-]+(?:, [\w-]+){3,})$", meaning)):
+    choices = entry.choices
+    if not choices and (found := re.search(r": ([\w-]+(?:, [\w-]+){3,})$", meaning)):
         # Choices too long for the left side end the text.
-        meaning = meaning[:choices.start()] + ": " + ", ".join(
-            f"`{name}`" for name in choices[1].split(", "))
-    elif choices:
-        names = choices[1].split(",")
-        named = [name for name in names if re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", meaning)]
-        if len(named) < min(4, len(names)):
-            meaning += ": " + ", ".join(f"`{name}`" for name in names)
-    if limits := re.search(r" in \[(\S+) - (\S+)\]", rest):
-        meaning += (f"; {limits[1]} to {limits[2]}" if int(limits[2]) < 1_000_000 else
-                    f"; at least {limits[1]}")
+        meaning, choices = meaning[:found.start()], found[1].split(", ")
+    named = [name for name in choices if re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", meaning)]
+    if len(named) < min(4, len(choices)):
+        meaning += ": " + ", ".join(f"`{name}`" for name in choices)
+    if entry.limits:
+        least, most = entry.limits
+        meaning += f"; {least} to {most}" if int(most) < 1_000_000 else f"; at least {least}"
     meaning = with_options_in_code(meaning, options)
-    names = [f"`{flag}`" for flag in re.sub(r"\{.*", "", flags).split(",")]
-    if value and flags.startswith("-"):
-        names[-1] = f"{names[-1][:-1]} {value[0]}`"
+    names = [f"`{flag}`" for flag in re.sub(r"\{.*", "", entry.flags).split(",")]
+    if entry.value and entry.flags.startswith("-"):
+        names[-1] = f"{names[-1][:-1]} {entry.value}`"
     return f"| {', '.join(names)} | {default} | {meaning} |\n"
-
-
-def shared_row(options, base):
-    names = ", ".join(f"`{option}`" for option in options)
-    return f"| {names} | | as in [`{base}`](#{base.replace(' ', '-')}) |\n"
 
 
 def rows(program, command, entries):
@@ -97,7 +84,9 @@ def rows(program, command, entries):
             own += line
         else:
             shared[base].append(option)
-    return own + "".join(shared_row(names, base) for base, names in shared.items() if names)
+    return own + "".join(
+        f"| {', '.join(f'`{name}`' for name in names)} | | as in [`{base}`](#{base.replace(' ', '-')}) |\n"
+        for base, names in shared.items() if names)
 
 
 def tables(program, page):

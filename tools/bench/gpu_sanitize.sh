@@ -6,32 +6,15 @@ program=$1 folder=$2 only=${3:-} failed=0
 "$program" scene hall -o "$folder" --points 20000 --model-points 2000 --poses 200 --force >/dev/null 2>&1 || exit 1
 "$program" convert "$folder/environment.las" -o "$folder/site.h5" --origins "$folder/origins.csv" \
   --cell-points 1000 --force >/dev/null 2>&1 || exit 1
-cat >"$folder/box.off" <<'BOX'
-OFF
-8 6 0
--2 -0.8 0
-2 -0.8 0
-2 0.8 0
--2 0.8 0
--2 -0.8 1.4
-2 -0.8 1.4
-2 0.8 1.4
--2 0.8 1.4
-4 0 3 2 1
-4 4 5 6 7
-4 0 1 5 4
-4 1 2 6 5
-4 2 3 7 6
-4 3 0 4 7
-BOX
-echo '{"bodies": [{"name": "front", "model": "box.off", "at": 3}, {"name": "middle", "model": "model.ply", "pivots": [2, -2]}]}' \
+box=box:4,1.6,1.4
+echo '{"bodies": [{"name": "front", "model": "box:4,1.6,1.4", "at": 3}, {"name": "middle", "model": "model.ply", "pivots": [2, -2]}]}' \
   >"$folder/vehicle.json"
 ask=(--env "$folder/site.h5" --trajectory "$folder/trajectory.txt"
   -o "$folder/out.h5" --force --device cuda --device-memory 256M)
 run="run --radius 0.1"
 points="$run --model $folder/model.ply"
-surface="$run --model $folder/box.off --model-as surface"
-solid="$run --model $folder/box.off --model-as solid"
+surface="$run --model $box --model-as surface"
+solid="$run --model $box --model-as solid"
 vehicle="$run --vehicle $folder/vehicle.json"
 questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$points --engine sweep --between-poses"
   "$points --engine sweep --clearance 0.3" "$points --engine sweep --clearance 0.3 --first-pose"

@@ -2,9 +2,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "bench/stages/set_engines.hpp"
-#include "bench/stages/share.hpp"
-#include "bench/stages/time_stages.hpp"
+#include "bench/stages/measures.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program.hpp"
@@ -12,20 +10,26 @@
 namespace clearway::bench {
 namespace {
 
-/// What every command is asked: a store, a model, a trajectory and a radius.
+/// A command that prints what `measure` returns, with the options of every command: a store, a
+/// model, a trajectory, a radius and threads. Returns it and its options, to which more are added.
 template <typename Options>
-void add_query(CLI::App& command, Options& options, int& threads) {
-  const auto file = [&](const char* name, std::filesystem::path& path, const char* help) {
-    command.add_option(name, path, help)->type_name("FILE")->required();
+std::pair<CLI::App&, Options&> add_command(CLI::App& program, const char* name, const char* help,
+                                           Json (*measure)(const Options&)) {
+  const auto options = std::make_shared<Options>();
+  CLI::App& command = *program.add_subcommand(name, help);
+  const auto file = [&](const char* option, std::filesystem::path& path, const char* what) {
+    command.add_option(option, path, what)->type_name("FILE")->required();
   };
-  file("--env", options.environment, "A store of clearway convert");
-  file("--model", options.model, "The model's points");
-  file("--trajectory", options.trajectory, "The poses");
-  command.add_option("--radius", options.radius, "Search radius in metres")
+  file("--env", options->environment, "A store of clearway convert");
+  file("--model", options->model, "The model's points");
+  file("--trajectory", options->trajectory, "The poses");
+  command.add_option("--radius", options->radius, "Search radius in metres")
       ->type_name("METRES")
       ->transform(tool::positive_length())
       ->capture_default_str();
-  tool::add_threads_option(command, threads);
+  tool::add_threads_option(command, options->threads);
+  command.callback([options, measure] { tool::print(measure(*options).dump(2) + "\n"); });
+  return {command, *options};
 }
 
 template <typename Value>
@@ -36,44 +40,20 @@ void add_count(CLI::App& command, const char* name, Value& value, const char* he
       ->capture_default_str();
 }
 
-void add_share(CLI::App& program) {
-  const auto options = std::make_shared<ShareOptions>();
-  CLI::App* command = program.add_subcommand(
-      "share",
-      "Says what share of a scene a search touches, and what touching more than that costs; prints "
-      "JSON");
-  add_query(*command, *options, options->threads);
-  add_count(*command, "--repetitions", options->repetitions, "Searches of which the median counts",
-            100);
-  command->callback([options] { tool::print(measure_shares(*options).dump(2) + "\n"); });
-}
-
-void add_stages(CLI::App& program) {
-  const auto options = std::make_shared<StageOptions>();
-  CLI::App* command = program.add_subcommand(
-      "stages", "Times reading alone and, with a GPU, sending and searching alone; prints JSON");
-  add_query(*command, *options, options->threads);
-  add_count(*command, "--slots", options->slots, "Pages in flight", 4096);
-  add_count(*command, "--cells", options->cells, "Cells of a page", 4096);
-  command->add_flag("--cold", options->cold, "Drop the store from the page cache before");
-  command->callback([options] { tool::print(time_stages(*options).dump(2) + "\n"); });
-}
-
 void add_search(CLI::App& program) {
-  const auto options = std::make_shared<SetEngines>();
-  CLI::App* command = program.add_subcommand(
-      "search",
+  const auto& [command, options] = add_command<SetEngines>(
+      program, "search",
       "Searches with engines that are set as no clearway run sets them, so that the result may not "
-      "be exact; writes it and prints JSON");
-  add_query(*command, *options, options->search.threads);
-  command->add_option("-o,--output", options->output, "The result, an HDF5 file")
+      "be exact; writes it and prints JSON",
+      search_with_set_engines);
+  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
       ->type_name("FILE")
       ->required();
   const auto choose = [&](const char* name, auto& chosen, auto usual, auto other,
                           const std::pair<const char*, const char*>& names, const char* help) {
     chosen = usual;
     command
-        ->add_option_function<std::string>(
+        .add_option_function<std::string>(
             name,
             [&chosen, usual, other, names](const std::string& text) {
               chosen = text == names.first ? usual : other;
@@ -82,34 +62,41 @@ void add_search(CLI::App& program) {
         ->check(CLI::IsMember({names.first, names.second}))
         ->default_str(names.first);
   };
-  choose("--engine", options->search.engine, Engine::kSweep, Engine::kGrid, {"sweep", "grid"},
+  choose("--engine", options.search.engine, Engine::kSweep, Engine::kGrid, {"sweep", "grid"},
          "The engine that searches");
-  choose("--device", options->search.device, Device::kCpu, Device::kCuda, {"cpu", "cuda"},
+  choose("--device", options.search.device, Device::kCpu, Device::kCuda, {"cpu", "cuda"},
          "Where it searches");
-  command->add_option("--gpus", options->search.gpus, "As of clearway run")->delimiter(',');
-  tool::add_size_option(*command, "--memory", options->search.memory_bytes, "As of clearway run");
-  tool::add_size_option(*command, "--device-memory", options->search.device_memory_bytes,
+  command.add_option("--gpus", options.search.gpus, "As of clearway run")->delimiter(',');
+  tool::add_size_option(command, "--memory", options.search.memory_bytes, "As of clearway run");
+  tool::add_size_option(command, "--device-memory", options.search.device_memory_bytes,
                         "As of clearway run");
   const auto length = [&](const std::string& name, double& metres, const char* help) {
-    command->add_option(name, metres, help)
-        ->type_name("METRES")
-        ->transform(tool::positive_length());
+    command.add_option(name, metres, help)->type_name("METRES")->transform(tool::positive_length());
   };
-  length("--tolerance", options->settings.tolerance,
+  length("--tolerance", options.settings.tolerance,
          "Engine sweep may decide wrongly for points within this of the radius");
-  length("--field-voxel", options->settings.field_voxel,
+  length("--field-voxel", options.settings.field_voxel,
          "Voxel of the sweep engine's model field (default: chosen)");
-  length("--grid-cell", options->settings.grid.grid_cell,
+  length("--grid-cell", options.settings.grid.grid_cell,
          "Grid cell of engine grid (default: chosen)");
-  choose("--precision", options->settings.grid.precision, GridPrecision::kExact,
+  choose("--precision", options.settings.grid.precision, GridPrecision::kExact,
          GridPrecision::kFloat, {"exact", "float"},
          "float: engine grid decides in single precision alone");
-  command->callback([options] { tool::print(search_with_set_engines(*options).dump(2) + "\n"); });
 }
 
 void add_commands(CLI::App& program, int&) {
-  add_share(program);
-  add_stages(program);
+  const auto& [share, shares] = add_command<ShareOptions>(
+      program, "share",
+      "Says what share of a scene a search touches, and what touching more than that costs; prints "
+      "JSON",
+      measure_shares);
+  add_count(share, "--repetitions", shares.repetitions, "Searches of which the median counts", 100);
+  const auto& [stages, pages] = add_command<StageOptions>(
+      program, "stages",
+      "Times reading alone and, with a GPU, sending and searching alone; prints JSON", time_stages);
+  add_count(stages, "--slots", pages.slots, "Pages in flight", 4096);
+  add_count(stages, "--cells", pages.cells, "Cells of a page", 4096);
+  stages.add_flag("--cold", pages.cold, "Drop the store from the page cache before");
   add_search(program);
 }
 

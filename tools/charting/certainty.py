@@ -1,6 +1,6 @@
 """How often a verdict is sure and wrong, and how often a cube inside a thing is called seen."""
 
-from charting.plot import handle_of, legend_in, panels, power
+from charting.plot import legend_in, look_of, panels, power
 from charting.sheet import Sheet
 from charting.style import BLACK, BLUE, ORANGE, SKY, VERMILION, Style, styles_of
 
@@ -24,7 +24,7 @@ def draw(record):
     places.set_title("c  any of n places is called clear")
     draw_seen(seen, record)
     seen.set_title("d  cubes inside things called seen")
-    legend_in(place, [handle_of(style) for style in shapes.values()], list(shapes), 3)
+    legend_in(place, shapes, 3)
     sheet.say("a and b: a place whose true distance is the margin of 0 (pale) or 0.1 m, by --sigmas. "
               "Lines: Monte Carlo; dotted with errors of scan and angle too. Crosses: what Clearway "
               "says of such places; nothing is drawn where none was found. c: of n independent "
@@ -33,10 +33,21 @@ def draw(record):
     return sheet
 
 
+def draw_percents(axes, cases, x_of, count_of, style, **how):
+    """A line of shares in percent, without those of nothing. count_of: (how many, of how many)."""
+    drawn = [(x_of(case), 100 * count / of) for case in cases for count, of in [count_of(case)] if count]
+    if drawn:
+        axes.plot(*zip(*drawn), **look_of(style), **how)
+
+
 def percent_axis(axes, label):
     axes.set_yscale("log")
     axes.yaxis.set_major_formatter(lambda value, _: power(value))
     axes.set_ylabel(label)
+
+
+def sigmas_of(case):
+    return case["sigmas"]
 
 
 def draw_places(axes, record, shapes, name):
@@ -48,13 +59,9 @@ def draw_places(axes, record, shapes, name):
     for shape, style in shapes.items():
         for errors, line in ERRORS.items():
             for margin in record.names("margin"):
-                cases = record.where(vary="place", shape=shape, errors=errors, margin=margin)
-                drawn = [(case["sigmas"], 100 * case.findings[name] / case.findings["trials"])
-                         for case in cases if case.findings[name]]
-                if drawn:
-                    axes.plot(*zip(*drawn), color=style.colour, marker=style.marker, linestyle=line,
-                              markeredgecolor="black", markeredgewidth=0.4,
-                              alpha=0.45 if margin == 0 else 1)
+                draw_percents(axes, record.where(vary="place", shape=shape, errors=errors, margin=margin),
+                              sigmas_of, lambda case: (case.findings[name], case.findings["trials"]),
+                              style._replace(line=line), alpha=0.45 if margin == 0 else 1)
     axes.set(xlabel="--sigmas", xticks=[2, 3, 4])
     percent_axis(axes, "places (%)")
 
@@ -62,12 +69,8 @@ def draw_places(axes, record, shapes, name):
 def draw_groups(axes, record):
     cases = record.where(vary="place", shape="wall and plane", errors="position", margin=0.1)
     for n, style in GROUPS.items():
-        drawn = [(case["sigmas"],
-                  100 * case.findings["groups"][n] / (case.findings["trials"] / int(n)))
-                 for case in cases if case.findings["groups"][n]]
-        if drawn:
-            axes.plot(*zip(*drawn), color=style.colour, marker=style.marker, linestyle=style.line,
-                      markeredgecolor="black", markeredgewidth=0.4, label=f"n = {n}")
+        draw_percents(axes, cases, sigmas_of, lambda case: (
+            case.findings["groups"][n], case.findings["trials"] / int(n)), style, label=f"n = {n}")
     axes.set(xlabel="--sigmas", xticks=[2, 3, 4])
     percent_axis(axes, "groups (%)")
     axes.legend(loc="lower left")
@@ -75,12 +78,10 @@ def draw_groups(axes, record):
 
 def draw_seen(axes, record):
     for side, style in SIDES.items():
-        cases = record.where(vary="noise", noise="normal", side=side)
-        drawn = [(case["size"] / side, 100 * case.findings["skin_seen"] / case.findings["skin"])
-                 for case in cases if case.findings["skin_seen"]]
-        if drawn:
-            axes.plot(*zip(*drawn), color=style.colour, marker=style.marker, linestyle=style.line,
-                      markeredgecolor="black", markeredgewidth=0.4, label=f"cubes of {side} m")
+        draw_percents(axes, record.where(vary="noise", noise="normal", side=side),
+                      lambda case: case["size"] / side,
+                      lambda case: (case.findings["skin_seen"], case.findings["skin"]), style,
+                      label=f"cubes of {side} m")
     axes.axvline(1 / 12, color=BLACK, linewidth=0.8, linestyle=":")
     axes.set(xlabel="standard deviation / side (line: 1 / 12)")
     percent_axis(axes, "cubes at a surface (%)")

@@ -1,5 +1,7 @@
 """Labels of markers that overlap neither each other nor a marker."""
 
+from itertools import product
+
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Bbox
 
@@ -21,23 +23,19 @@ def place_labels(axes, labels):
     for (x, y, text), mark in zip(labels, marks):
         note = axes.annotate(text, (x, y), (0, 0), textcoords="offset points", zorder=6,
                              path_effects=[withStroke(linewidth=2, foreground="white")])
-        box = free_place(note, mark, taken, inside, renderer)
-        taken.append(box)
+        taken.append(free_place(note, mark, taken, inside, renderer))
 
 
 def free_place(note, mark, taken, inside, renderer):
     """Moves the note to where it overlaps least, and returns its box."""
     best = None
-    for distance in DISTANCES:
-        for right, up in DIRECTIONS:
-            put(note, right, up, distance)
-            box = note.get_window_extent(renderer)
-            cost = sum(overlap(box, other) for other in taken)
-            cost += 5 * (box.width * box.height - overlap(box, inside))
-            if best is None or cost < best[0] - 1e-6:
-                best = (cost, right, up, distance)
-            if best[0] < 1e-6:
-                break
+    for distance, (right, up) in product(DISTANCES, DIRECTIONS):
+        put(note, right, up, distance)
+        box = note.get_window_extent(renderer)
+        cost = sum(overlap(box, other) for other in taken)
+        cost += 5 * (box.width * box.height - overlap(box, inside))
+        if best is None or cost < best[0] - 1e-6:
+            best = (cost, right, up, distance)
         if best[0] < 1e-6:
             break
     _, right, up, distance = best

@@ -1,4 +1,16 @@
-"""What the paper (see README.md) reports of its own data sets and machines, in our words."""
+"""The paper's table and figures, with what it (see README.md) reports of its own data sets and
+machines, in our words."""
+
+import numpy as np
+from matplotlib.patches import Patch
+
+from charting.plot import (bar_look, fail, legend_in, line, log_axis, look_of, panels,
+                           right_axes, room_for_failures, rows_of_bars, seconds_axis, short, spread,
+                           with_unit)
+from charting.record import markdown_table
+from charting.sheet import Sheet
+from charting.style import (BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, Style,
+                            engine_styles)
 
 # Table 1 by the scene like it: points, model points, poses, colliding points on the CPU (double)
 # and on the GPU (float).
@@ -35,3 +47,424 @@ POINTS = """Fig. 4 (Hannover, 111 random samples of 0.5 to 55.5 million points; 
 grid on a Titan X):
 The time of both is nearly linear in the number of points, with perhaps a very shallow logarithm \
 beneath; the paper leaves that open."""
+
+
+def like(scene):
+    """Which of the paper's data sets a scene is like, for a title."""
+    return f"{scene} (like {TABLE[scene][0]})" if scene in TABLE else scene
+
+
+# --- Table 1: colliding points of every engine on the four scenes, beside the paper's ---------------
+
+NO_PAPER = ("", "", "", "", "", "")  # of a scene that is not like one of the paper's
+
+
+def grouped(number):
+    return f"{number:,}" if number != "" else ""
+
+
+def is_float(case):
+    return not case.get("exact")
+
+
+def counted(case):
+    """What to say of a case's colliding points."""
+    return "failed" if case.failure else grouped(case.runs[-1]["colliding_points"])
+
+
+def equality(case):
+    if case.failure or is_float(case):
+        return ""
+    return "=" if case.findings["equal"] else f"differs by {grouped(case.wrong())}"
+
+
+def sizes_of(cases):
+    """Points E and M and poses T of a scene, as far as a case has run."""
+    run = next((case.runs[-1] for case in cases if case.runs), {})
+    return [grouped(run.get(name, "")) for name in ("environment_points", "model_points", "poses")]
+
+
+def rows_of(record, scene):
+    """Rows (what, here, beside it a note, the paper's)."""
+    cases = record.where(scene=scene)
+    _, *sizes, on_cpu, on_gpu = TABLE.get(scene, NO_PAPER)
+    rows = [(what, here, "", grouped(theirs)) for what, here, theirs in
+            zip(("points E", "model points M", "poses T"), sizes_of(cases), sizes)]
+    for case in cases:
+        theirs = on_cpu if case["engine"] == "kdtree cpu" else on_gpu if is_float(case) else ""
+        rows.append((case["engine"], counted(case), equality(case), grouped(theirs)))
+    for case in cases:
+        if is_float(case) and not case.failure:
+            rows.append(("float differs by", grouped(case.wrong()),
+                         f"+{case.findings['only_here']} −{case.findings['only_in_reference']}",
+                         f"{on_gpu - on_cpu} or more" if on_gpu else ""))
+    return rows
+
+
+def draw_table(record):
+    rows = {scene: rows_of(record, scene) for scene in record.names("scene")}
+    count, lines = max(map(len, rows.values())), -(-len(rows) // 2)
+    sheet = Sheet(record, "Table 1: colliding points of every engine", lines * (count + 2) * 0.19,
+                  times=())
+    axes, _ = panels(sheet, lines, 2)
+    for place in axes.flat:
+        place.set_axis_off()
+    for place, scene in zip(axes.flat, rows):
+        draw_rows(place, rows[scene], scene, count)
+    sheet.say("Rows of engines: colliding points; = the same set, point by point, as sweep cpu. "
+              "Float differs by: points that only float finds (+) and that it misses (−). The "
+              "paper's columns are its own data sets with its k-d tree (double) on the row of "
+              "kdtree and its GPU method (float) on that of float; of its difference only that "
+              "of the counts is known, so at least as many points differ.")
+    for case in record.cases:
+        if case.failure:
+            sheet.number_of_failure(f"{case.key}: {case.failure}")
+    return sheet
+
+
+def draw_rows(axes, rows, scene, count):
+    axes.set_xlim(0, 1)
+    axes.set_ylim(count + 1.6, -0.2)
+    columns = ((0.0, "left"), (0.5, "right"), (0.52, "left"), (1.0, "right"))
+    head = (scene, "Clearway", "", TABLE.get(scene, NO_PAPER)[0])
+    for row, cells in enumerate([head, *rows]):
+        for (x, side), text in zip(columns, cells):
+            axes.text(x, row + 0.5, text, ha=side, va="center",
+                      weight="bold" if row == 0 else "normal")
+    for y, width in ((0, 1.0), (1, 0.7), (4, 0.5), (len(rows) + 1, 1.0)):
+        axes.plot([0, 1], [y, y], color="black", linewidth=width)
+
+
+def table_markdown(record):
+    """The same as a Markdown table, a row a scene."""
+    engines, rows = record.names("engine"), []
+    for scene in record.names("scene"):
+        cases = record.where(scene=scene)
+        found = {case["engine"]: f"{counted(case)} {equality(case)}".strip() for case in cases}
+        floats = [grouped(case.wrong()) for case in cases if is_float(case) and not case.failure]
+        name, *numbers, on_cpu, on_gpu = TABLE.get(scene, NO_PAPER)
+        rows.append([scene, *sizes_of(cases), *(found.get(engine, "") for engine in engines),
+                     "".join(floats[:1]), name, *map(grouped, [*numbers, on_cpu, on_gpu]),
+                     grouped(on_gpu - on_cpu) if on_gpu else ""])
+    return markdown_table(
+        ["scene", "E", "M", "T", *engines, "float differs by", "paper's data set", "its E", "its M",
+         "its T", "CPU", "GPU", "counts differ by"], rows,
+        "Points of the environment E, of the model M, poses T; colliding points of each "
+        "engine, = where the set is that of sweep cpu point by point. The paper's columns are "
+        "its own data sets, k-d tree in double on the CPU and grid in float on the GPU.")
+
+
+# --- Fig. 1: speed by the number of threads ---------------------------------------------------------
+
+
+def draw_threads(record):
+    sheet = Sheet(record, "Fig. 1: speed by the number of threads (hall)", 3.9, THREADS)
+    cores = record.machine["cores"]
+    axes, _ = panels(sheet, 2, 1)
+    absolute, relative = axes[:, 0]
+    most = max(case["threads"] for case in record.cases)
+    dotted = {"linewidth": 0.8, "linestyle": ":"}
+    absolute.plot([0, most], [0, most], color=GREY, label="linear", **dotted)
+    draw_speed(sheet, absolute, "a", record, 1, 1)
+    absolute.set(title="a  relative to 1 thread", xlabel="threads", ylabel="speed (1 thread = 1)")
+    relative.plot([0, 1, most / cores], [0, 1, 1 + 0.173 * (min(most / cores, 2) - 1)],
+                  color=BLACK, label="as the paper says", **dotted)
+    draw_speed(sheet, relative, "b", record, cores, cores)
+    relative.set(title=f"b  relative to all {cores} logical cores",
+                 xlabel="threads / logical cores", ylabel=f"speed ({cores} threads = 1)")
+    for panel, all_cores, corner in ((absolute, cores, "upper left"),
+                                     (relative, 1, "lower right")):
+        panel.axvline(all_cores, color=GREY, linewidth=0.8, linestyle="--", zorder=0)
+        panel.set(xlim=(0, None), ylim=(0, None))
+        room_for_failures(panel)
+        panel.legend(loc=corner)
+    sheet.say(f"Dashed, upright: the {cores} logical cores of this machine. The dotted line of b is "
+              "drawn from the paper's words, its physical cores at 1: where logical cores share "
+              "physical ones, ours bends before.")
+    return sheet
+
+
+def draw_speed(sheet, axes, letter, record, reference_threads, unit):
+    """unit: threads that count as 1 on the x axis."""
+    for name, style in engine_styles(record.names("engine")).items():
+        cases = record.where(engine=name)
+        reference = record.measured(engine=name, threads=reference_threads)
+        if not reference:
+            sheet.say(f"{letter}: no line of {name}, which has no run with {reference_threads} "
+                      "threads to relate to.")
+            for case in cases:
+                if case.failure:
+                    fail(sheet, axes, case["threads"] / unit, case.failure, style)
+            continue
+        seconds = reference[0].median("search")
+        line(sheet, axes, cases, lambda case: case["threads"] / unit,
+             lambda case: seconds / case.seconds("search"), style, name)
+
+
+# --- Fig. 2: time of each step by grid resolution, in the adaptive layout and a regular one ---------
+
+DEFAULT_CELL_POINTS = 65536  # of `clearway convert`
+# What follows one another; the last is what search does not spend computing.
+STEPS = (("plan and field", SKY, "...."), ("making the engine", PURPLE, "xxxx"),
+         ("search: computing", BLUE, ""), ("search: only moving data", ORANGE, "////"))
+CELLS = "cells (c: chunks) read (right axis)"
+# Stages of the search, which overlap.
+STAGES = (("read", VERMILION, "v"), ("upload", GREEN, "^"), ("collect", BLACK, "x"))
+
+
+def steps_of(case):
+    """Medians of the steps, seconds."""
+    compute = np.minimum(case.seconds("compute"), case.seconds("search"))
+    return [case.median("plan", "field"), case.median("engine"), np.median(compute),
+            np.median(case.seconds("search") - compute)]
+
+
+def draw_grid(record):
+    sheet = Sheet(record, "Fig. 2: time of the grid engine's steps by grid resolution (hall)", 6.6, GRID)
+    axes, place = panels(sheet, 3, 1, legend_lines=4)
+    chosen = record.measured(vary="grid cell", value="chosen")
+    most = record.names("chunk_points")
+    chunks = "chunks read" + (f",\n{most[0]:,} points at most" if most else "")
+    for panel, (vary, title, of_x, cells) in zip(axes[:, 0], (
+            ("grid cell", "a  by grid cell, adaptive layout", "edge of a grid cell (m)", None),
+            ("adaptive layout", "b  by points of a cell, adaptive layout", "points of a cell, at most",
+             "cells read"),
+            ("regular layout", "c  by edge of a cell, regular layout", "edge of a cell (m)", chunks))):
+        draw_bars(sheet, panel, record.where(vary=vary), cells)
+        panel.set(title=title, xlabel=of_x)
+    entries = {name: Patch(**bar_look(colour, hatch)) for name, colour, hatch in STEPS}
+    for handle, name in zip(*axes[1, 0].get_legend_handles_labels()):
+        entries[f"{name} (overlaps)"] = handle
+    entries |= {CELLS: one for panel in sheet.figure.axes for one in panel.lines
+                if one.get_label() == CELLS}
+    legend_in(place, entries, 2)
+    if chosen:
+        sheet.say(f"a: the heuristic chose {chosen[0].runs[0]['grid_cell']:g} m.")
+    sheet.say("The bars stack what follows one another. In the search the stages overlap: it is "
+              "split into the time in which at least one worker computed, and the rest, when data "
+              "only moved; the markers are the time in which each other stage was busy, not added. "
+              "Grid cells of a are hashed and their number is not reported; the line of b is "
+              "the number of the store's cells that were read; c cuts the regular cells, which "
+              "are of any number of points, to chunks and counts those.")
+    return sheet
+
+
+def size_of(case):
+    """Where a case stands in the order of its panel."""
+    if case["value"] != "chosen":
+        return float(case["value"])
+    return case.runs[0]["grid_cell"] + 1e-9 if case.runs else 1e9
+
+
+def size_label(case):
+    if case["value"] == "chosen":
+        return f"{case.runs[0]['grid_cell']:g}\nchosen" if case.runs else "chosen"
+    if case["vary"] != "adaptive layout":
+        return case["value"]
+    value = int(case["value"])
+    return f"{value:,}" + ("\ndefault" if value == DEFAULT_CELL_POINTS else "")
+
+
+def draw_bars(sheet, axes, cases, cells):
+    cases = sorted(cases, key=size_of)
+    axes.set_xticks(range(len(cases)), [size_label(case) for case in cases])
+    axes.set_xlim(-0.6, len(cases) - 0.4)
+    axes.set_ylabel("time (s)")
+    axes.grid(False, axis="x")
+    x = [at for at, case in enumerate(cases) if case.runs]
+    run = [cases[at] for at in x]
+    bottom = np.zeros(len(run))
+    for (_, colour, hatch), seconds in zip(STEPS, np.array([steps_of(case) for case in run]).T):
+        axes.bar(x, seconds, 0.62, bottom, **bar_look(colour, hatch))
+        bottom += seconds
+    whole = np.array([spread(case.seconds("plan", "field", "engine", "search")) for case in run]).T
+    if run:
+        axes.errorbar(x, whole[0], whole[1:], color="black", linestyle="none", elinewidth=0.8)
+    for name, colour, marker in STAGES:
+        axes.plot([at + 0.38 for at in x], [case.median(name) for case in run], color=colour,
+                  marker=marker, linestyle="none", label=name, markersize=4)
+    for at, case in enumerate(cases):
+        if case.failure:
+            fail(sheet, axes, at, case.failure)
+    axes.set_ylim(0, None)
+    axes.margins(y=0.08)
+    room_for_failures(axes)
+    if cells and run:
+        draw_cells(right_axes(axes), x, [case.runs[-1]["cells_read"] for case in run], cells)
+
+
+def draw_cells(right, x, cells, name):
+    right.plot(x, cells, markersize=4, label=CELLS, **look_of(Style(GREEN, "D", "--", "")))
+    right.set_yscale("log")
+    # Between powers of ten, so that at least two are named.
+    right.set_ylim(10 ** np.floor(np.log10(min(cells))),
+                   10 ** (np.floor(np.log10(max(cells))) + 1))
+    right.yaxis.set_major_formatter(lambda value, _: short(value))
+    right.set_ylabel(name)
+
+
+# --- Fig. 3: time of every engine and device on the four scenes -------------------------------------
+
+HEIGHT = 0.36  # of a bar
+
+
+def draw_engines(record):
+    sheet = Sheet(record, "Fig. 3: time of every engine on the four scenes", 4.6, ENGINES,
+                  ("search", "total"))
+    scenes, engines = record.names("scene"), record.names("engine")
+    axes, place = panels(sheet, -(-len(scenes) // 2), 2, legend_lines=1, sharey=True)
+    for panel in axes.flat[len(scenes):]:
+        panel.set_axis_off()
+    seconds = [case.median(name) for case in record.measured() for name in ("search", "total")]
+    for letter, panel, scene in zip("abcd", axes.flat, scenes):
+        draw_scene(sheet, panel, record.where(scene=scene), engines)
+        panel.set_title(f"{letter}  {like(scene)}")
+        if seconds:
+            panel.set_xlim(min(seconds) / 2, max(seconds) * 2)
+            seconds_axis(panel.xaxis)
+    for panel in axes[-1]:
+        panel.set_xlabel("time (s)")
+    for panel in axes[:, 1]:
+        panel.tick_params(labelleft=False)
+    legend_in(place, {"search (full bar)": Patch(**bar_look("#888888")),
+                      "total (hatched bar)": Patch(**bar_look("white", "////"))}, 2)
+    sheet.say("The time axes are logarithmic, and the same in all panels.")
+    return sheet
+
+
+def draw_scene(sheet, axes, cases, engines):
+    for case in cases:
+        style = engine_styles(engines)[case["engine"]]
+        y = engines.index(case["engine"])
+        for offset, name, look in ((-HEIGHT / 2, "search", bar_look(style.colour)),
+                                   (HEIGHT / 2, "total", bar_look("white", style.hatch))):
+            if not case.runs:
+                continue
+            median, below, above = spread(case.seconds(name))
+            axes.barh(y + offset, median, HEIGHT, **look)
+            axes.errorbar(median, y + offset, xerr=[[below], [above]], color="black",
+                          elinewidth=0.8, linestyle="none")
+        if case.failure:
+            place = axes.get_yaxis_transform()
+            axes.plot([0.96], [y], marker="x", color=VERMILION, markersize=6, markeredgewidth=1.8,
+                      transform=place, clip_on=False)
+            axes.annotate(str(sheet.number_of_failure(case.failure)), (0.96, y), xycoords=place,
+                          xytext=(4.5, 0), textcoords="offset points", va="center")
+    rows_of_bars(axes, engines)
+
+
+# --- Fig. 4: time by the number of environment points -----------------------------------------------
+
+RESAMPLES = 4000  # of the bootstrap
+
+
+def medians(cases):
+    """Points and median seconds of the search of each sample."""
+    cases = [case for case in cases if case.runs]
+    return (np.array([case["points"] for case in cases], float),
+            np.array([case.median("search") for case in cases]))
+
+
+def bend(points, seconds):
+    """How far the time bends from linear (0) to n log n (1): of a fixed time and a time per point
+    that grows with the logarithm of n, fitted to relative errors, that growth over what n log n
+    has."""
+    most = np.log(points.max())
+    terms = np.stack([np.ones_like(points), points, points * np.log(points / points.max())], 1)
+    (_, linear, growing), *_ = np.linalg.lstsq(terms / seconds[:, None], np.ones_like(points),
+                                               rcond=None)
+    return growing / linear * most
+
+
+def residuals(points, seconds):
+    """The root mean square of relative residuals: of a line, and of n log n, both with a fixed
+    time."""
+    out = []
+    for term in (points, points * np.log(points)):
+        terms = np.stack([np.ones_like(points), term], 1) / seconds[:, None]
+        fit, *_ = np.linalg.lstsq(terms, np.ones_like(points), rcond=None)
+        out.append(np.sqrt(np.mean((terms @ fit - 1) ** 2)))
+    return out
+
+
+def interval(points, seconds):
+    """The middle 95 % of what bend() gives for samples drawn anew."""
+    chance = np.random.default_rng(1)
+    bends = []
+    for _ in range(RESAMPLES):
+        drawn = chance.integers(len(points), size=len(points))
+        bends.append(bend(points[drawn], seconds[drawn]))
+    return np.percentile(bends, [2.5, 97.5])
+
+
+def answer_of(low, high):
+    """What an interval of bend() says."""
+    if low <= 0 <= high:
+        return "cannot be told apart" if high >= 1 else "linear"
+    if high < 0:
+        return "less than linear"
+    return "n log n" if low <= 1 <= high else "between" if high < 1 else "more than n log n"
+
+
+def points_markdown(record):
+    """Whether the time is linear or n log n, as a Markdown table."""
+    rows = []
+    for name in record.names("engine"):
+        points, seconds = medians(record.where(engine=name))
+        if len(points) < 8:
+            continue
+        straight, curve = residuals(points, seconds)
+        low, high = interval(points, seconds)
+        rows.append([name, str(len(points)), f"{100 * straight:.1f} %", f"{100 * curve:.1f} %",
+                     f"{bend(points, seconds):.2f} ({low:.2f} to {high:.2f})", answer_of(low, high)])
+    return markdown_table(
+        ["engine", "samples", "linear: residual", "n log n: residual", "bend (95 %)", "answer"], rows,
+        "The search by the number of environment points. Residual: root mean square of the "
+        "relative residuals of a fixed time and a term. Bend: of a fixed time and a time per "
+        "point that grows with the logarithm of n, how much it grows: 0 is linear, 1 is n "
+        f"log n; in brackets the middle 95 % of {RESAMPLES} bootstrap samples.")
+
+
+def draw_points(record):
+    styles = {name: style._replace(line="none")
+              for name, style in engine_styles(record.names("engine")).items()}
+    rows = -(-(len(styles) + 1) // 2)
+    sheet = Sheet(record, "Fig. 4: time by the number of environment points (samples of the hall)",
+                  rows * 1.85 + 0.3, POINTS, ("answer", "search"))
+    axes, place = panels(sheet, rows, 2, legend_lines=-(-len(styles) // 4))
+    for panel in axes.flat[len(styles) + 1:]:
+        panel.set_axis_off()
+    together = axes.flat[0]
+    for letter, panel, (name, style) in zip("bcdefgh", axes.flat[1:], styles.items()):
+        cases = record.where(engine=name)
+        line(sheet, together, cases, lambda case: case["points"],
+             lambda case: case.answer_seconds(), style, name, markersize=3)
+        line(sheet, panel, cases, lambda case: case["points"] / 1e6,
+             lambda case: case.seconds("search"), style, name, markersize=3)
+        draw_fit(panel, *medians(cases))
+        panel.set(title=f"{letter}  {name}", xlim=(0, None), ylim=(0, None))
+        room_for_failures(panel)
+        panel.set(xlabel="environment points (million)", ylabel="search (s)")
+    log_axis(together.xaxis)
+    seconds_axis(together.yaxis)
+    together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
+    room_for_failures(together)
+    sheet.say("Lines: least squares through the medians, with the share of the variance that they "
+              "explain (R²).")
+    legend_in(place, styles, 4)
+    return sheet
+
+
+def draw_fit(axes, points, y):
+    """The straight line through the medians of the search."""
+    if len(points) < 3:
+        return
+    x = points / 1e6
+    slope, start = np.polyfit(x, y, 1)
+    share = 1 - ((y - start - slope * x) ** 2).sum() / ((y - y.mean()) ** 2).sum()
+    ends = np.array([0, x.max()])
+    axes.plot(ends, start + slope * ends, color="black", linewidth=1, zorder=4)
+    sign = "−" if slope < 0 else "+"
+    axes.text(0.97, 0.05, f"{with_unit(start, 's')} {sign} {with_unit(abs(slope), 's')}/million"
+              f"\nR² = {share:.3f}", transform=axes.transAxes, va="bottom", ha="right",
+              bbox={"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1}, zorder=6)

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-from charting.style import VERMILION, engine_style
+from charting.style import VERMILION, Style
 
 
 def spread(values):
@@ -13,15 +13,30 @@ def spread(values):
     return median, median - np.min(values), np.max(values) - median
 
 
+def look_of(style):
+    """What a line and its markers look like, as matplotlib names it."""
+    return {"color": style.colour, "marker": style.marker, "linestyle": style.line,
+            "markeredgecolor": "black", "markeredgewidth": 0.4}
+
+
+def value_of(case):
+    return float(case["value"])
+
+
+def lines(sheet, axes, cases, styles, by, y_of, x_of=value_of, **how):
+    """A line for each value of the parameter `by` that the cases have. styles: of these values."""
+    for name in dict.fromkeys(case[by] for case in cases):
+        line(sheet, axes, [case for case in cases if case[by] == name], x_of, y_of, styles[name],
+             name, **how)
+
+
 def line(sheet, axes, cases, x_of, y_of, style, label, **how):
     """A marker a case at the median of its runs, the least and the greatest as a bar, in the order
     of x. A case that failed is a cross at the top, numbered as its reason in the caption."""
     cases = sorted(cases, key=x_of)
     drawn = [(x_of(case), *spread(y_of(case))) for case in cases if len(y_of(case))]
     x, y, below, above = np.array(drawn).reshape(-1, 4).T
-    axes.errorbar(x, y, [below, above], color=style.colour, marker=style.marker,
-                  linestyle=style.line, markeredgecolor="black", markeredgewidth=0.4,
-                  elinewidth=0.8, label=label, **how)
+    axes.errorbar(x, y, [below, above], elinewidth=0.8, label=label, **{**look_of(style), **how})
     for case in cases:
         if case.failure:
             fail(sheet, axes, x_of(case), case.failure, style)
@@ -76,19 +91,30 @@ def short(value):
     return f"{value:g}"
 
 
+def setter(axis, what):
+    """set_xlim or set_ylim, set_xscale or set_yscale."""
+    return getattr(axis.axes, f"set_{axis.axis_name}{what}")
+
+
+def fixed_ticks(axis, ticks, text):
+    """Ticks at these values alone, labelled with what text(value) makes of them."""
+    axis.set_major_locator(FixedLocator(ticks))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: text(value)))
+
+
 def log_axis(axis):
     """Log scale with plain numbers. True where there is something to show, else no ticks."""
-    is_y = axis.axis_name == "y"
-    limits = axis.axes.dataLim.intervaly if is_y else axis.axes.dataLim.intervalx
+    limits = axis.get_data_interval()
     empty = not np.isfinite(limits).all() or limits.max() <= 0
     if empty:
-        axis.axes.set_ylim(0.1, 1) if is_y else axis.axes.set_xlim(0.1, 1)
-    axis.axes.set_yscale("log") if is_y else axis.axes.set_xscale("log")
-    axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
-    axis.set_minor_formatter(NullFormatter())
+        setter(axis, "lim")(0.1, 1)
+    setter(axis, "scale")("log")
     if empty:
-        axis.set_major_locator(NullLocator())
-        axis.set_minor_locator(NullLocator())
+        fixed_ticks(axis, [], short)
+    else:
+        axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    axis.set_minor_formatter(NullFormatter())
     return not empty
 
 
@@ -99,8 +125,7 @@ def seconds_axis(axis):
     low, high = axis.get_view_interval()
     decades = np.log10(high / low)
     if decades < 0.8:
-        low, high = (low / 1.4, high * 1.4)
-        axis.axes.set_ylim(low, high) if axis.axis_name == "y" else axis.axes.set_xlim(low, high)
+        setter(axis, "lim")(low / 1.4, high * 1.4)
     subs = (1, 2, 5) if decades < 2 else (1, 3) if decades < 3 else (1,)
     axis.set_major_locator(LogLocator(subs=subs, numticks=20))
 
@@ -111,16 +136,12 @@ def axis_with_zero(axis, values, every=1):
     positive = sorted({value for value in values if value > 0})
     if not positive:
         return
-    setter = axis.axes.set_yscale if axis.axis_name == "y" else axis.axes.set_xscale
     if 0 in values:
-        setter("symlog", linthresh=positive[0], linscale=0.8)
+        setter(axis, "scale")("symlog", linthresh=positive[0], linscale=0.8)
         axis.set_view_interval(-0.3 * positive[0], positive[-1] * 2, ignore=True)
     else:
-        setter("log")
-    ticks = ([0] if 0 in values else []) + positive[::every]
-    axis.set_major_locator(FixedLocator(ticks))
-    axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter(FuncFormatter(lambda value, _: power(value)))
+        setter(axis, "scale")("log")
+    fixed_ticks(axis, ([0] if 0 in values else []) + positive[::every], power)
 
 
 def power(value):
@@ -139,10 +160,16 @@ def count_axis(axes, most, label):
     axes.set_yscale("symlog", linthresh=1, linscale=0.6)
     top = int(np.ceil(np.log10(max(most, 10))))
     axes.set_ylim(-0.35, 10.0**top * 2)
-    axes.yaxis.set_major_locator(FixedLocator([0] + [10.0**i for i in range(0, top + 1)]))
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+    fixed_ticks(axes.yaxis, [0] + [10.0**i for i in range(0, top + 1)], short)
     axes.set_ylabel(label)
+
+
+def right_axes(axes):
+    """Axes over these, with a scale of their own on the right."""
+    right = axes.twinx()
+    right.spines["right"].set_visible(True)
+    right.grid(False)
+    return right
 
 
 def panels(sheet, rows, columns, legend_lines=0, **how):
@@ -186,24 +213,29 @@ def wide_bars(sheet, row, names, styles, title, label, bars):
     for i, (of, style) in enumerate(styles.items()):
         for k, name in enumerate(names):
             bars(axes, of, name, k + (i - (len(styles) - 1) / 2) * height, height * 0.9,
-                 {"color": style.colour, "hatch": style.hatch, "edgecolor": "black", "linewidth": 0.4})
+                 bar_look(style.colour, style.hatch, 0.4))
     axes.set_yticks(range(len(names)), names)
     axes.invert_yaxis()
     axes.set(title=title, xlabel=label)
     return axes
 
 
-def legend_in(place, handles, labels, columns):
-    legend = place.legend(handles, labels, loc="center", ncol=columns, frameon=False,
+def bar_look(colour, hatch="", linewidth=0.5):
+    """What a bar looks like, as matplotlib names it."""
+    return {"facecolor": colour, "hatch": hatch, "edgecolor": "black", "linewidth": linewidth}
+
+
+def rows_of_bars(axes, names):
+    """A row for each name, the first one at the top."""
+    axes.set_yticks(range(len(names)), names)
+    axes.set_ylim(len(names) - 0.4, -0.6)
+    axes.grid(False, axis="y")
+
+
+def legend_in(place, entries, columns):
+    """entries: what each label stands beside, the style of a line or what matplotlib draws there."""
+    handles = [Line2D([], [], **look_of(entry)) if isinstance(entry, Style) else entry
+               for entry in entries.values()]
+    legend = place.legend(handles, list(entries), loc="center", ncol=columns, frameon=False,
                           borderaxespad=0, columnspacing=1.4)
     legend.set_in_layout(False)
-
-
-def engine_handles(names):
-    """Handles of a legend for engines, in their styles."""
-    return [handle_of(engine_style(name)) for name in names]
-
-
-def handle_of(style):
-    return Line2D([], [], color=style.colour, marker=style.marker, linestyle=style.line,
-                  markeredgecolor="black", markeredgewidth=0.4)

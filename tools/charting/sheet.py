@@ -50,7 +50,8 @@ class Sheet:
         self._finished = True
         inner = WIDTH - 2 * MARGIN
         title = self._wrapped(self.title, inner, 10, "bold")
-        below = self._wrapped(" ".join(self.caption + self._failure_sentences()), inner)
+        failures = "; ".join(f"{number} {reason}" for reason, number in self._failures.items())
+        below = self._wrapped(" ".join(self.caption + [f"× failed: {failures}."] * bool(failures)), inner)
         footer = self._wrapped(footer_of(self.record, self.times), inner)
         beside = self._wrapped("In the paper\n" + self.paper, PAPER_WIDTH) if self.paper else []
         top = len(title) * LINE * 1.3 + MARGIN + 0.05
@@ -82,12 +83,6 @@ class Sheet:
         figure.savefig(paths[1], dpi=DPI)
         plt.close(figure)
         return paths
-
-    def _failure_sentences(self):
-        if not self._failures:
-            return []
-        return ["× failed: " + "; ".join(f"{number} {reason}"
-                                         for reason, number in self._failures.items()) + "."]
 
     def _put(self, left, top, height, lines, **how):
         self.figure.text(left / WIDTH, top / height, "\n".join(lines), va="top", ha="left",

@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 
-from charting.plot import (axis_with_zero, count_axis, engine_handles, fail, handle_of, legend_in,
-                           line, log_axis, panels, power, room_for_failures, seconds_axis)
+from charting.plot import (axis_with_zero, count_axis, fail, legend_in, line, lines, log_axis, panels,
+                           power, right_axes, room_for_failures, seconds_axis, value_of)
 from charting.sheet import Sheet
-from charting.style import BLACK, GREY, SKY, Style, engine_style
+from charting.style import BLACK, GREY, SKY, Style, engine_styles
 
 LAYOUTS = {"adaptive": Style(BLACK, "o", "-", ""),
            "regular, 50 cells along": Style(SKY, "p", "--", ""),
@@ -18,74 +18,67 @@ GIB = 2**30
 def draw(record):
     sheet = Sheet(record, "Where methods fail", 8.0, times=("answer",))
     axes, place = panels(sheet, 4, 3, legend_lines=2)
-    panel = iter(axes.flat)
+    most = record.names("chunk_points")
+    chunks = f"; regular cells are cut to chunks of {most[0]:,} points" if most else ""
     sheet.say("Hall; the tunnel in d to f. Wrong points of a and b: against exact distances. "
               "c: grey dots, the hall's points that close to the radius, in ulps (double's spacing "
               "there); lines, right axis: of points made to lie exactly so many ulps beside it, "
               "the share that an engine decides wrongly. "
-              "d to f: eight stray points stretch the tunnel's bounding box" +
-              chunks_text(record) + "; full markers: grid, "
+              f"d to f: eight stray points stretch the tunnel's bounding box{chunks}; full markers: grid, "
               "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
               "h and i: the budget relative to the least that the program names, which "
               "it refuses to go below.")
-    draw_origin(sheet, next(panel), next(panel), record)
-    draw_boundary(sheet, next(panel), record)
-    draw_sparseness(sheet, [next(panel) for _ in range(3)], record)
-    draw_radius(sheet, next(panel), record)
-    draw_memory(sheet, next(panel), record, "--memory", "h  --memory (hall)")
-    draw_memory(sheet, next(panel), record, "--device-memory", "i  --device-memory (hall)")
-    draw_poses(sheet, next(panel), record, "noise of the poses", "j  noise of the poses",
-               "sigma (m and rad)")
-    draw_poses(sheet, next(panel), record, "stretch of the poses", "k  stretch, allowed", "stretch")
-    draw_poses(sheet, next(panel), record, "stretch without --allow-non-rigid",
-               "l  stretch, not allowed", "stretch")
-    for one in axes.flat:
-        room_for_failures(one)
-    engines = record.names("engine")
-    layouts = [name for name in LAYOUTS if record.where(layout=name)]
-    legend_in(place, engine_handles(engines) + [handle_of(LAYOUTS[name]) for name in layouts],
-              engines + layouts, 4)
+    number, distance, boundary, *sparse = axes.flat[:6]
+    radius, memory, device_memory, *poses = axes.flat[6:]
+    draw_origin(sheet, number, distance, record)
+    draw_boundary(sheet, boundary, record)
+    draw_sparseness(sheet, sparse, record)
+    engine_lines(sheet, radius, record.where(vary="radius"), answer)
+    radius.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)")
+    log_axis(radius.xaxis)
+    seconds_axis(radius.yaxis)
+    draw_memory(sheet, memory, record, "--memory", "h  --memory (hall)")
+    draw_memory(sheet, device_memory, record, "--device-memory", "i  --device-memory (hall)")
+    for panel, (vary, title, label) in zip(poses, (
+            ("noise of the poses", "j  noise of the poses", "sigma (m and rad)"),
+            ("stretch of the poses", "k  stretch, allowed", "stretch"),
+            ("stretch without --allow-non-rigid", "l  stretch, not allowed", "stretch"))):
+        cases = record.where(vary=vary)
+        engine_lines(sheet, panel, cases, answer)
+        axis_with_zero(panel.xaxis, [case["value"] for case in cases], 2)
+        panel.set(title=title, xlabel=label, ylabel="answer (s)")
+        seconds_axis(panel.yaxis)
+    for panel in axes.flat:
+        room_for_failures(panel)
+    layouts = {name: style for name, style in LAYOUTS.items() if record.where(layout=name)}
+    legend_in(place, engine_styles(record.names("engine")) | layouts, 4)
     say_differences(sheet, record)
     return sheet
 
 
-def chunks_text(record):
-    most = record.names("chunk_points")
-    return f"; regular cells are cut to chunks of {most[0]:,} points" if most else ""
-
-
-def engine_lines(sheet, axes, cases, x_of, y_of):
-    for name in dict.fromkeys(case["engine"] for case in cases):
-        line(sheet, axes, [case for case in cases if case["engine"] == name], x_of, y_of,
-             engine_style(name), name)
+def engine_lines(sheet, axes, cases, y_of, x_of=value_of):
+    lines(sheet, axes, cases, engine_styles(case["engine"] for case in cases), "engine", y_of, x_of)
 
 
 def answer(case):
     return case.answer_seconds()
 
 
-def value(case):
-    return case["value"]
-
-
 def draw_origin(sheet, number, distance, record):
     cases = record.where(vary="origin")
-    judged = [case for case in cases if "false_hits" in case.findings]
 
     def wrong(case):
-        if "false_hits" not in case.findings:
-            return np.array([])
-        return np.array([case.findings["false_hits"] + case.findings["misses"]])
+        return np.array([case.wrong()] if "false_hits" in case.findings else [])
 
     def farthest(case):
-        return np.array([case.findings["largest_distance"]]) if any(wrong(case)) else np.array([])
+        return np.array([case.findings["largest_distance"]] if case.wrong() else [])
 
-    engine_lines(sheet, number, cases, value, wrong)
-    count_axis(number, max([wrong(case)[0] for case in judged], default=1), "wrong points")
+    engine_lines(sheet, number, cases, wrong)
+    count_axis(number, max(case.wrong() for case in cases) if cases else 1, "wrong points")
     number.set_title("a  far origin: how many")
-    engine_lines(sheet, distance, cases, value, farthest)
+    engine_lines(sheet, distance, cases, farthest)
     distance.set(title="b  far origin: how far", ylabel="largest |d − r| (m)")
-    distances = [farthest(case)[0] for case in judged if len(farthest(case))]
+    distances = [farthest(case)[0] for case in cases if case.wrong()]
     if distances:
         distance.set_yscale("log")
         distance.set_ylim(min(distances) / 20, max(distances) * 20)
@@ -106,59 +99,48 @@ def draw_boundary(sheet, axes, record):
         count_axis(axes, within.max(), "points")
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(lambda x, _: power(x))
-    made = [case for case in record.where(vary="ulps") if case.findings]
+    cases = record.where(vary="ulps")
+    styles = engine_styles(case["engine"] for case in cases)
+    made = [case for case in cases if case.findings]
     if made:
-        right = axes.twinx()
-        right.spines["right"].set_visible(True)
-        right.grid(False)
+        right = right_axes(axes)
         for case in made:
-            style = engine_style(case["engine"])
+            style = styles[case["engine"]]
             wrong = 100 * np.divide(case.findings["wrong"], case.findings["points"])
             right.plot(2.0 ** np.arange(len(wrong)), wrong, color=style.colour,
                        linestyle=style.line, marker=style.marker, markersize=2.5)
         right.set(ylim=(-5, 105), ylabel="made points, wrong (%)")
-    for case in record.where(vary="ulps"):
+    for case in cases:
         if case.failure:
-            fail(sheet, axes, 1, case.failure, engine_style(case["engine"]))
+            fail(sheet, axes, 1, case.failure, styles[case["engine"]])
     axes.set(title="c  near the boundary", xlabel="|d − r|, at most (ulps of r)")
 
 
 def draw_sparseness(sheet, axes, record):
     time, conversion, memory = axes
-    cases = record.where(vary="sparseness")
     for name, style in LAYOUTS.items():
-        of_layout = [case for case in cases if case["layout"] == name]
-        converted = [case for case in of_layout if case.get("engine") is None]
-        runs = [case for case in of_layout if case.get("engine") is not None]
-        for engine in dict.fromkeys(case["engine"] for case in runs):
+        cases = record.where(vary="sparseness", layout=name)
+        converted = [case for case in cases if case.get("engine") is None]
+        for engine in dict.fromkeys(case["engine"] for case in cases if case.get("engine")):
             hollow = {"markerfacecolor": "white"} if engine.startswith("sweep") else {}
-            of_engine = [case for case in runs if case["engine"] == engine]
-            line(sheet, time, of_engine, value, answer, style, name, **hollow)
+            of_engine = [case for case in cases if case.get("engine") == engine]
+            line(sheet, time, of_engine, value_of, answer, style, name, **hollow)
             if hollow:
-                line(sheet, memory, of_engine, value,
+                line(sheet, memory, of_engine, value_of,
                      lambda case: case.values("peak_resident_bytes") / GIB, style, name, **hollow)
         for case in converted:
             if case.failure:
                 fail(sheet, time, case["value"], case.failure, style)
         for panel, finding, unit in ((conversion, "convert_seconds", 1),
                                      (memory, "convert_peak_bytes", GIB)):
-            line(sheet, panel, converted, value,
+            line(sheet, panel, converted, value_of,
                  lambda case: np.array([case.findings[finding] / unit])
                  if finding in case.findings else np.array([]), style, name)
-    time.set(title="d  sparse: answer", ylabel="answer (s)")
-    conversion.set(title="e  sparse: conversion", ylabel="conversion (s)")
-    memory.set(title="f  sparse: memory", ylabel="peak memory (GiB)")
-    for panel in axes:
-        panel.set_xlabel("bounding box made longer by")
+    for panel, title, label in zip(axes, ("d  sparse: answer", "e  sparse: conversion", "f  sparse: memory"),
+                                   ("answer (s)", "conversion (s)", "peak memory (GiB)")):
+        panel.set(title=title, ylabel=label, xlabel="bounding box made longer by")
         log_axis(panel.xaxis)
         seconds_axis(panel.yaxis)
-
-
-def draw_radius(sheet, axes, record):
-    engine_lines(sheet, axes, record.where(vary="radius"), value, answer)
-    axes.set(title="g  radius", xlabel="radius (m)", ylabel="answer (s)")
-    log_axis(axes.xaxis)
-    seconds_axis(axes.yaxis)
 
 
 def draw_memory(sheet, axes, record, option, title):
@@ -170,7 +152,7 @@ def draw_memory(sheet, axes, record, option, title):
         return
     least = {engine: least_of(record, option, engine)
              for engine in dict.fromkeys(case["engine"] for case in cases)}
-    engine_lines(sheet, axes, cases, lambda case: case["value"] / least[case["engine"]], answer)
+    engine_lines(sheet, axes, cases, answer, lambda case: case["value"] / least[case["engine"]])
     axes.set_xscale("log", base=2)
     axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
     axes.set_xticks([], minor=True)
@@ -193,20 +175,11 @@ def least_of(record, option, engine):
     return min([case["value"] for case in cases if case.runs] or [case["value"] for case in cases])
 
 
-def draw_poses(sheet, axes, record, vary, title, label):
-    cases = record.where(vary=vary)
-    engine_lines(sheet, axes, cases, value, answer)
-    axis_with_zero(axes.xaxis, [case["value"] for case in cases], 2)
-    axes.set(title=title, xlabel=label, ylabel="answer (s)")
-    seconds_axis(axes.yaxis)
-
-
 def say_differences(sheet, record):
     """Whether the engines of j and k give the k-d tree's set."""
     for letter, vary in (("j", "noise of the poses"), ("k", "stretch of the poses")):
         judged = [case for case in record.where(vary=vary) if "equal" in case.findings]
-        differing = [f"{case['engine']} at {case['value']:g} by "
-                     f"{case.findings['only_here'] + case.findings['only_in_reference']} points"
+        differing = [f"{case['engine']} at {case['value']:g} by {case.wrong()} points"
                      for case in judged if not case.findings["equal"]]
         if judged:
             sheet.say(f"{letter}: " + ("differ from kdtree: " + ", ".join(differing)

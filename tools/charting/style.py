@@ -30,8 +30,8 @@ OTHERS = [Style(BLUE, "o", "-", "////"), Style(VERMILION, "s", "--", "...."),
           Style(BLACK, "X", "-", "----"), Style(YELLOW, "*", "--", "oo")]
 
 
-def engine_style(name):
-    return ENGINES.get(name, OTHERS[-1])
+def engine_styles(names):
+    return {name: ENGINES.get(name, OTHERS[-1]) for name in names}
 
 
 def styles_of(names):

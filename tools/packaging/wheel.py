@@ -48,32 +48,25 @@ Tag: {tags()}
     }
 
 
-def row_of(name, data):
-    """A line of RECORD: the file's name, hash and size."""
-    digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
-    return f"{name},sha256={digest},{len(data)}\n"
-
-
 def write_wheel(arguments, path):
     info = f"clearway-{arguments.version}.dist-info"
-    record = ""
+    record = ""  # a line for each file: its name, hash and size
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as wheel:
 
-        def add(name, data, executable=False):
+        def add(name, data):
+            nonlocal record
             entry = zipfile.ZipInfo(name)
-            entry.external_attr = (0o100755 if executable else 0o100644) << 16
+            entry.external_attr = (0o100755 if ".so" in name.rpartition("/")[2] else 0o100644) << 16
             entry.compress_type = zipfile.ZIP_DEFLATED
             wheel.writestr(entry, data)
+            digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+            record += f"{name},sha256={digest},{len(data)}\n"
 
         for file in sorted(arguments.folder.rglob("*")):
             if file.is_file() and "__pycache__" not in file.parts:
-                name = file.relative_to(arguments.folder).as_posix()
-                data = file.read_bytes()
-                add(name, data, ".so" in file.name)
-                record += row_of(name, data)
+                add(file.relative_to(arguments.folder).as_posix(), file.read_bytes())
         for name, text in texts(arguments).items():
             add(f"{info}/{name}", text.encode())
-            record += row_of(f"{info}/{name}", text.encode())
         add(f"{info}/RECORD", f"{record}{info}/RECORD,,\n".encode())
 
 

@@ -1,1 +1,1 @@
-"""What tools/check_prose.py knows of Markdown, of help texts, of codes and of terms."""
+"""What tools/check_prose.py knows of Markdown, of help texts, of names and of terms."""

@@ -32,10 +32,8 @@ def parse(text):
         elif marker:
             fence = marker[1]
             blocks.append(Block("code", number + 1, "", marker[2]))
-        elif last.kind == "code" and not line.strip():
-            last.text += "\n"
-        elif last.kind == "code" and line.startswith("    "):
-            last.text += line + "\n"
+        elif last.kind == "code" and (line.startswith("    ") or not line.strip()):
+            last.text += line.rstrip() + "\n"
         elif last.kind == "prose" and _goes_on(line):
             last.text += "\n" + line.lstrip("> ")
         else:
@@ -62,6 +60,12 @@ def _block_of(number, line, in_list):
     if REFERENCE.match(line):
         return Block("reference", number, line)
     return Block("prose", number, LIST_ITEM.sub("", line).lstrip("> "))
+
+
+def code_spans(block):
+    """The line and the text of each code span of a block that is no code."""
+    for span in CODE_SPAN.finditer(block.text if block.kind != "code" else ""):
+        yield block.line + block.text.count("\n", 0, span.start()), span[2]
 
 
 def link_targets(block):

@@ -1,5 +1,6 @@
 """Names of the sources in documents: files, types, functions and constants in code spans exist, and
-a list of the names of an enumeration, for users of Python, has all of them."""
+a list of the names of an enumeration, for users of Python, has all of them. And codes of warnings and
+notes: those of the table are used, and messages get their code from it."""
 
 import re
 
@@ -21,6 +22,15 @@ NAME_OF = re.compile(r"\bname_of\((\w+) \w+\) \{\n(.*?)\n\}", re.DOTALL)
 TEXT = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 LITERAL = re.compile(r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*|R"\((.*?)\)"', re.DOTALL)
 QUOTED = re.compile(r"'([a-z0-9][a-z0-9-]*)'")
+
+# That the table has every code is checked by the compiler, and that the guide agrees with it by the
+# test of its tables.
+SOURCES = (".cpp", ".hpp", ".cu", ".cuh")
+MESSAGES = "src/core/messages/message_table.hpp"
+ROW = re.compile(r'\{"([a-z0-9-]+)",\s*k(?:Note|Warning|Either)')
+CODE = re.compile(r'"([a-z0-9-]+)"')
+BY_HAND = re.compile(r'Severity::k(?:Note|Warning),\s*"')
+
 LIST_FROM = 3  # so many names of an enumeration in one text are a list of them
 
 
@@ -40,10 +50,9 @@ class Names:
     def unknown(self, name, blocks):
         """The code spans of a document whose names no source has."""
         for block in blocks:
-            for span in markdown.CODE_SPAN.finditer("" if block.kind == "code" else block.text):
-                if not self._is_known(span[2].strip()) and span[2] not in FOREIGN.get(name, ()):
-                    line = block.line + block.text.count("\n", 0, span.start())
-                    yield f"{name}:{line}: {span[2]}: no source has this name"
+            for line, code in markdown.code_spans(block):
+                if not self._is_known(code.strip()) and code not in FOREIGN.get(name, ()):
+                    yield f"{name}:{line}: {code}: no source has this name"
 
     def _is_known(self, code):
         if PLACEHOLDER.search(code):
@@ -76,3 +85,22 @@ class Names:
                         missing = ", ".join(sorted(names - listed))
                         yield (f"{path.relative_to(self._root)}:{line}: a list of {of} lacks "
                                f"{missing}")
+
+
+def code_problems(root, files):
+    table = root / MESSAGES
+    if not table.exists():
+        return
+    used = set()
+    for path in sorted(files):
+        name = str(path.relative_to(root))
+        if path.suffix not in SOURCES or path == table or not name.startswith(("src/", "tools/cli/")):
+            continue
+        text = re.sub(r"//.*", "", path.read_text(encoding="utf-8"))
+        used.update(CODE.findall(text))
+        for match in BY_HAND.finditer(text):
+            line = text.count("\n", 0, match.start()) + 1
+            yield f"{name}:{line}: a message that is made by hand; use note() or warning() of core/messages"
+    for code in ROW.findall(table.read_text(encoding="utf-8")):
+        if code not in used:
+            yield f"{MESSAGES}: {code}: no source gives a message with this code"

@@ -10,6 +10,23 @@ TEXT_COLUMN = 30  # where the help texts of options begin
 NOT_OPTIONS = {"Positionals", "Subcommands"}  # sections; every other one is a group of options
 
 
+class Entry:
+    """An option or argument, from what the help has on its left side."""
+
+    def __init__(self, name):
+        self.flags, _, rest = name.partition(" ")
+        value = re.match(r"(?!REQUIRED|Excludes:|Needs:|\.\.\.)[^\s:={]+", rest)
+        choices, given = re.search(r":\{([^}]*)\}", rest), re.search(r"=(\S+)", rest)
+        excluded = re.search(r"\bExcludes: (.*)", rest)
+        limits = re.search(r" in \[(\S+) - (\S+)\]", rest)
+        self.value = value[0] if value else ""
+        self.choices = choices[1].split(",") if choices else []
+        self.default = given[1] if given else ""
+        self.excluded = excluded[1].split() if excluded else []
+        self.limits = limits.groups() if limits else ()
+        self.required = bool(re.search(r"\bREQUIRED\b", rest))
+
+
 class Program:
     def __init__(self, path):
         self.name = Path(path).name

@@ -39,23 +39,19 @@ ERRORS = {"position": Errors(registration=0.01, pose=0.02),
           "all": Errors(scan=0.005, registration=0.01, pose=0.02, angle=np.radians(0.05))}
 
 
-def faces(quadrangles):
-    """Triangles of quadrangles, each of four corners."""
-    triangles = [[4 * i + a, 4 * i + b, 4 * i + c] for i in range(len(quadrangles))
-                 for a, b, c in ((0, 1, 2), (0, 2, 3))]
-    return np.concatenate(quadrangles).astype(float), np.array(triangles, np.uint32)
-
-
 class Wall:
     """A scanned wall beside a flat side of the vehicle, which is the plane y = 0."""
     name = "wall and plane"
+    # The sides of the vehicle, each of four corners, as multiples of SIDE.
+    sides = [[[-1, 0, -1], [1, 0, -1], [1, 0, 1], [-1, 0, 1]]]
 
     def vertices(self):
-        return self.mesh()[0]
+        return SIDE * np.concatenate(self.sides)
 
     def mesh(self):
-        s = SIDE
-        return faces([np.array([[-s, 0, -s], [s, 0, -s], [s, 0, s], [-s, 0, s]])])
+        """Vertices, and two triangles of each side."""
+        return self.vertices(), np.array([[4 * i, 4 * i + k, 4 * i + k + 1]
+                                          for i in range(len(self.sides)) for k in (1, 2)], np.uint32)
 
     def points(self, margin):
         """True points whose least distance is the margin."""
@@ -70,40 +66,29 @@ class Wall:
 class Edge(Wall):
     """A scanned upright edge beside an upright edge of the vehicle, which fills x < 0, y < 0."""
     name = "edge and edge"
-
-    def mesh(self):
-        s = SIDE
-        return faces([np.array([[0, 0, -s], [0, -s, -s], [0, -s, s], [0, 0, s]]),
-                      np.array([[0, 0, -s], [-s, 0, -s], [-s, 0, s], [0, 0, s]])])
+    axes = 2  # on which the vehicle ends
+    sides = [[[0, 0, -1], [0, -1, -1], [0, -1, 1], [0, 0, 1]],
+             [[0, 0, -1], [-1, 0, -1], [-1, 0, 1], [0, 0, 1]]]
 
     def points(self, margin):
         z = np.arange(-0.15, 0.151, 0.02)
         return np.stack([np.full(z.size, margin / np.sqrt(2))] * 2 + [z], 1)
 
     def distance(self, points):
-        return corner_distance(points[..., :2])
+        """To the surface of all that is below 0 on every axis."""
+        points = points[..., :self.axes]
+        outside = np.linalg.norm(np.maximum(points, 0), axis=-1)
+        return np.where(outside > 0, outside, -points.max(-1))
 
 
 class Corner(Edge):
     """A single scanned point beside a corner of the vehicle, which fills x < 0, y < 0, z < 0."""
     name = "point and corner"
-
-    def mesh(self):
-        s = SIDE
-        one = np.array([[0, 0, 0], [-s, 0, 0], [-s, -s, 0], [0, -s, 0]])
-        return faces([np.roll(one, k, 1) for k in range(3)])
+    axes = 3
+    sides = [np.roll([[0, 0, 0], [-1, 0, 0], [-1, -1, 0], [0, -1, 0]], k, 1) for k in range(3)]
 
     def points(self, margin):
         return np.full((1, 3), margin / np.sqrt(3))
-
-    def distance(self, points):
-        return corner_distance(points)
-
-
-def corner_distance(points):
-    """Distance to the surface of all that is below 0 on every axis."""
-    outside = np.linalg.norm(np.maximum(points, 0), axis=-1)
-    return np.where(outside > 0, outside, -points.max(-1))
 
 
 SHAPES = {shape.name: shape for shape in (Wall(), Edge(), Corner())}
@@ -161,43 +146,31 @@ def monte_carlo(shape, errors, margin, sigmas, trials, seed):
             for k, sums in found.items()}
 
 
-class Program:
-    """The Python module clearway, asked about many places at once: each is a pose of one of two
-    bodies that take turns, so that none moves and no place is near another."""
-
-    def __init__(self, clearway):
-        self.clearway = clearway
-
-    def ask(self, places, errors, sigmas):
-        """Which places are called clear, which a conflict, and its margins."""
-        count, each = places.points.shape[:2]
-        columns = int(np.ceil(np.sqrt(count)))
-        at = APART * np.stack([np.arange(count) % columns, np.arange(count) // columns,
-                               np.zeros(count)], 1)
-        poses = np.zeros((count, 3, 4))
-        poses[:, :, :3], poses[:, :, 3] = places.turns, places.shifts + at
-        module = self.clearway
-        model = module.Model(*places.shape.mesh())
-        bodies = [module.Body(f"turn {i}", model, poses[i::2],
-                              np.arange(i, count, 2, dtype=np.uint32)) for i in range(2)]
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            write_las(folder / "scan.las", (places.points + at[:, None]).reshape(-1, 3), QUANTUM)
-            module.convert(folder / "scan.las", folder / "site.h5")
-            query = module.Query(bodies=bodies, poses=poses, radius=max(places.margin, 1e-9),
-                                 sigmas=sigmas, **errors.options())
-            report = module.search(module.Store(folder / "site.h5"), query, folder / "out.h5")
-            result = module.Result(folder / "out.h5")
-            near = np.concatenate([result.near().source, result.collisions().source])
-            certain = certain_sources(folder / "out.h5", result)
-        clear = np.ones(count, bool)
-        clear[near.astype(np.int64) // each] = False
-        conflict = np.bincount(certain.astype(np.int64) // each, minlength=count) >= CERTAIN
-        return clear, conflict, report.margins
-
-
-def certain_sources(path, result):
-    """Of the colliding points those that are certainly too close."""
-    with h5py.File(path) as file:
-        certain = file["collisions/certain"][:].astype(bool)
-    return result.collisions().source[certain]
+def ask(clearway, places, errors, sigmas):
+    """Asks the Python module `clearway` about many places at once: each is a pose of one of two bodies
+    that take turns, so that none moves and no place is near another. Returns which places are called
+    clear, which a conflict, and its margins."""
+    count, each = places.points.shape[:2]
+    columns = int(np.ceil(np.sqrt(count)))
+    at = APART * np.stack([np.arange(count) % columns, np.arange(count) // columns, np.zeros(count)], 1)
+    poses = np.zeros((count, 3, 4))
+    poses[:, :, :3], poses[:, :, 3] = places.turns, places.shifts + at
+    model = clearway.Model(*places.shape.mesh())
+    bodies = [clearway.Body(f"turn {i}", model, poses[i::2], np.arange(i, count, 2, dtype=np.uint32))
+              for i in range(2)]
+    with tempfile.TemporaryDirectory() as name:
+        scan, store, out = (Path(name) / end for end in ("scan.las", "site.h5", "out.h5"))
+        write_las(scan, (places.points + at[:, None]).reshape(-1, 3), QUANTUM)
+        clearway.convert(scan, store)
+        query = clearway.Query(bodies=bodies, poses=poses, radius=max(places.margin, 1e-9),
+                               sigmas=sigmas, **errors.options())
+        report = clearway.search(clearway.Store(store), query, out)
+        result = clearway.Result(out)
+        colliding = result.collisions().source.astype(np.int64)
+        near = result.near().source.astype(np.int64)
+        with h5py.File(out) as file:
+            certain = colliding[file["collisions/certain"][:].astype(bool)]
+    clear = np.ones(count, bool)
+    clear[np.concatenate([near, colliding]) // each] = False
+    conflict = np.bincount(certain // each, minlength=count) >= CERTAIN
+    return clear, conflict, report.margins

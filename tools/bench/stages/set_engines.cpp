@@ -1,12 +1,9 @@
-#include "bench/stages/set_engines.hpp"
-
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "bench/stages/measures.hpp"
 #include "clearway/error.hpp"
-#include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
 #include "core/sweep/tolerance.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/pending_file.hpp"
@@ -24,8 +21,6 @@
 
 namespace clearway::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 void check(const SetEngines& asked) {
   const EngineSettings& settings = asked.settings;
@@ -100,12 +95,11 @@ Json search_with_set_engines(const SetEngines& asked) {
   const Store opened(asked.environment);
   const StoreReader& store = opened.reader();
   SearchOptions options = asked.search;
-  options.threads = threads_or_all(options.threads);
+  options.threads = threads_or_all(asked.threads);
   if (options.engine == Engine::kGrid) ::setenv("CUDA_DEVICE_MAX_CONNECTIONS", "32", 0);
   options.started = start_devices(options, &opened);
   PendingFile output(asked.output, true);
-  const Query query(read_model(asked.model, {.radius = asked.radius}),
-                    read_trajectory(asked.trajectory, {}), {.radius = asked.radius});
+  const Query query = read_query(asked);
   const double inputs = total.seconds();
   const Thinned thinned(query, asked.settings.tolerance);
 

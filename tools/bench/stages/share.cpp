@@ -1,13 +1,10 @@
 // What share of a scene a search touches, and what touching more than that would cost.
-#include "bench/stages/share.hpp"
-
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-#include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
+#include "bench/stages/measures.hpp"
 #include "core/util/stopwatch.hpp"
 #include "cpu/sweep_engine.hpp"
 #include "io/files/thread_limit.hpp"
@@ -20,8 +17,6 @@
 
 namespace clearway::bench {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// What a search is made to do although it need not.
 struct Forced {
@@ -66,10 +61,7 @@ class CountingKind final : public CpuSweepKindOf<Vec3> {
 class Share {
  public:
   explicit Share(const ShareOptions& asked)
-      : asked_(asked),
-        query_(read_model(asked.model, {.radius = asked.radius}),
-               read_trajectory(asked.trajectory, {}), {.radius = asked.radius}),
-        model_hash_(hash_of_model(query_.model)) {
+      : asked_(asked), query_(read_query(asked)), model_hash_(hash_of_model(query_.model)) {
     options_.threads = threads_or_all(asked.threads);
     options_.device = Device::kCpu;
     options_.engine = Engine::kSweep;
@@ -161,8 +153,6 @@ class Share {
 
 }  // namespace
 
-nlohmann::ordered_json measure_shares(const ShareOptions& options) {
-  return Share(options).measured();
-}
+Json measure_shares(const ShareOptions& options) { return Share(options).measured(); }
 
 }  // namespace clearway::bench

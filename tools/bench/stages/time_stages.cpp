@@ -1,5 +1,3 @@
-#include "bench/stages/time_stages.hpp"
-
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -8,9 +6,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "bench/stages/measures.hpp"
 #include "clearway/error.hpp"
-#include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
 #include "core/page/page_pool.hpp"
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
@@ -60,9 +57,9 @@ double seconds_between(Clock::time_point begin, Clock::time_point end) {
 
 /// Times pages that are staged beforehand and all started at once; seconds on the device's clock,
 /// the best of several runs. Where there are more pages than slots, the first ones stand for all.
-nlohmann::ordered_json time_device(const StoreReader& store, const SweepFilter& filter,
-                                   std::span<const PlannedCell> cells,
-                                   std::span<const PlannedPage> pages, SlotLayout layout) {
+Json time_device(const StoreReader& store, const SweepFilter& filter,
+                 std::span<const PlannedCell> cells, std::span<const PlannedPage> pages,
+                 SlotLayout layout) {
   constexpr std::size_t kMostSlots = 512;
   constexpr int kRepetitions = 5;
   pages = pages.first(std::min(pages.size(), kMostSlots));
@@ -106,7 +103,7 @@ void drop_from_page_cache(const std::filesystem::path& path) {
 
 }  // namespace
 
-nlohmann::ordered_json time_stages(const StageOptions& options) {
+Json time_stages(const StageOptions& options) {
   if (options.cold) drop_from_page_cache(options.environment);
   const StoreReader store(options.environment);
   const std::vector<Vec3> model =
@@ -134,10 +131,10 @@ nlohmann::ordered_json time_stages(const StageOptions& options) {
   run_pages(
       store, cells, pages, engines, {.ignored = none, .threads = options.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
-  nlohmann::ordered_json out{{"pages", pages.size()},
-                             {"cells_read", store.cells_touched()},
-                             {"bytes_read", store.bytes_read().coordinates},
-                             {"read_seconds", times.total}};
+  Json out{{"pages", pages.size()},
+           {"cells_read", store.cells_touched()},
+           {"bytes_read", store.bytes_read().coordinates},
+           {"read_seconds", times.total}};
 #ifdef CLEARWAY_CUDA
   if (on_device) out["device"] = time_device(store, filter, cells, pages, layout);
 #endif

@@ -10,7 +10,6 @@
 
 #include <boost/iterator/function_output_iterator.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <tuple>
 
 #include "bench/peers/programs/peer.hpp"
@@ -35,7 +34,12 @@ struct Marker {
 
 class Cgal : public Peer {
  public:
-  Cgal(std::span<const Vec3> points, const PeerOptions& options) : options_(options) {
+  Cgal(std::span<const Vec3> points, const PeerOptions& options)
+      : Peer(options, {{"name", "CGAL"},
+                       {"version", CGAL_VERSION_STR},
+                       {"settings",
+                        "Kd_tree of doubles with cached coordinates, built by all threads, "
+                        "Fuzzy_sphere with epsilon 0, places in parallel"}}) {
     std::vector<Entry> entries;
     entries.reserve(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -44,14 +48,6 @@ class Cgal : public Peer {
     }
     tree_.insert(entries.begin(), entries.end());
     tree_.build<CGAL::Parallel_tag>();
-  }
-
-  nlohmann::json about() const override {
-    return {{"name", "CGAL"},
-            {"version", CGAL_VERSION_STR},
-            {"settings",
-             "Kd_tree of doubles with cached coordinates, built by all threads, "
-             "Fuzzy_sphere with epsilon 0, places in parallel"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
@@ -66,7 +62,6 @@ class Cgal : public Peer {
   }
 
  private:
-  PeerOptions options_;
   Tree tree_;
 };
 

@@ -1,7 +1,6 @@
 // nanoflann: a k-d tree in doubles, one radius search for every pose and model point.
 
 #include <nanoflann.hpp>
-#include <nlohmann/json.hpp>
 
 #include "bench/peers/programs/peer.hpp"
 
@@ -50,18 +49,14 @@ class MarkingResult {
 class Nanoflann : public Peer {
  public:
   Nanoflann(std::span<const Vec3> points, const PeerOptions& options)
-      : options_(options),
+      : Peer(options, {{"name", "nanoflann"},
+                       {"version", CLEARWAY_NANOFLANN_VERSION},
+                       {"settings",
+                        "double, leaves of 12 points, a callback for each point found, places in "
+                        "parallel; the tree is built by one thread"}}),
         adaptor_{points},
         tree_(3, adaptor_, nanoflann::KDTreeSingleIndexAdaptorParams(kLeafPoints)) {
     tree_.buildIndex();
-  }
-
-  nlohmann::json about() const override {
-    return {{"name", "nanoflann"},
-            {"version", CLEARWAY_NANOFLANN_VERSION},
-            {"settings",
-             "double, leaves of 12 points, a callback for each point found, places in "
-             "parallel; the tree is built by one thread"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
@@ -79,7 +74,6 @@ class Nanoflann : public Peer {
   }
 
  private:
-  PeerOptions options_;
   NanoflannPoints adaptor_;
   NanoflannTree tree_;
 };

@@ -5,7 +5,6 @@
 #include <fcl/geometry/octree/octree.h>
 #include <octomap/octomap.h>
 
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <unordered_map>
 
@@ -19,7 +18,13 @@ using Object = fcl::CollisionObject<double>;
 class Octomap : public Peer {
  public:
   Octomap(std::span<const Vec3> points, const PeerOptions& options)
-      : options_(options),
+      : Peer(options, {{"name", "FCL with OctoMap"},
+                       {"version", std::string("FCL ") + FCL_VERSION},
+                       {"cell", options.cell},
+                       {"settings",
+                        "voxels, spheres around the model points in a "
+                        "DynamicAABBTreeCollisionManager, voxels that were found are not tested "
+                        "again, poses in parallel"}}),
         origin_(middle_of(points)),
         map_(std::make_shared<octomap::OcTree>(options.cell)) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -38,16 +43,6 @@ class Octomap : public Peer {
     }
     map_->updateInnerOccupancy();
     tree_ = std::make_shared<fcl::OcTree<double>>(map_);
-  }
-
-  nlohmann::json about() const override {
-    return {{"name", "FCL with OctoMap"},
-            {"version", std::string("FCL ") + FCL_VERSION},
-            {"cell", options_.cell},
-            {"settings",
-             "voxels, spheres around the model points in a "
-             "DynamicAABBTreeCollisionManager, voxels that were found are not tested "
-             "again, poses in parallel"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
@@ -110,7 +105,6 @@ class Octomap : public Peer {
     return false;
   }
 
-  PeerOptions options_;
   Vec3 origin_;
   std::shared_ptr<octomap::OcTree> map_;
   std::shared_ptr<fcl::OcTree<double>> tree_;

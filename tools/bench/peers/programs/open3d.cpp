@@ -6,8 +6,6 @@
 #include <open3d/core/nns/NearestNeighborSearch.h>
 #include <tbb/global_control.h>
 
-#include <nlohmann/json.hpp>
-
 #include "bench/peers/programs/peer.hpp"
 #include "core/geometry/predicate.hpp"
 
@@ -19,20 +17,16 @@ namespace o3c = open3d::core;
 class Open3d : public Peer {
  public:
   Open3d(std::span<const Vec3> points, const PeerOptions& options)
-      : options_(options),
+      : Peer(options, {{"name", "Open3D"},
+                       {"version", OPEN3D_VERSION},
+                       {"settings",
+                        "NearestNeighborSearch::FixedRadiusSearch, doubles, unsorted, 262,144 "
+                        "places together, its own threads"}}),
         limit_(tbb::global_control::max_allowed_parallelism,
                static_cast<std::size_t>(options.threads)),
         search_(o3c::Tensor(&points[0].x, {static_cast<std::int64_t>(points.size()), 3},
                             o3c::Float64)) {
     if (!search_.FixedRadiusIndex(options.radius)) throw std::runtime_error("open3d: no index");
-  }
-
-  nlohmann::json about() const override {
-    return {{"name", "Open3D"},
-            {"version", OPEN3D_VERSION},
-            {"settings",
-             "NearestNeighborSearch::FixedRadiusSearch, doubles, unsorted, 262,144 "
-             "places together, its own threads"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
@@ -62,7 +56,6 @@ class Open3d : public Peer {
     for (std::int64_t i = 0; i < count; ++i) marks.mark(static_cast<std::size_t>(index[i]));
   }
 
-  PeerOptions options_;
   tbb::global_control limit_;
   o3c::nns::NearestNeighborSearch search_;
 };

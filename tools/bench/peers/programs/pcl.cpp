@@ -5,8 +5,6 @@
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>
 
-#include <nlohmann/json.hpp>
-
 #include "bench/peers/programs/peer.hpp"
 
 namespace clearway::bench {
@@ -15,19 +13,17 @@ namespace {
 class Pcl : public Peer {
  public:
   Pcl(std::span<const Vec3> points, const PeerOptions& options)
-      : options_(options), origin_(middle_of(points)), tree_(false) {
+      : Peer(options, {{"name", "PCL"},
+                       {"version", PCL_VERSION_PRETTY},
+                       {"settings",
+                        "KdTreeFLANN, floats from the middle of the scan, unsorted, places in "
+                        "parallel; the tree is built by one thread"}}),
+        origin_(middle_of(points)),
+        tree_(false) {
     const auto cloud = pcl::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
     cloud->reserve(points.size());
     for (const Vec3& p : points) cloud->push_back(point_at(p));
     tree_.setInputCloud(cloud);
-  }
-
-  nlohmann::json about() const override {
-    return {{"name", "PCL"},
-            {"version", PCL_VERSION_PRETTY},
-            {"settings",
-             "KdTreeFLANN, floats from the middle of the scan, unsorted, places in "
-             "parallel; the tree is built by one thread"}};
   }
 
   void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) override {
@@ -46,7 +42,6 @@ class Pcl : public Peer {
             static_cast<float>(p.z - origin_.z)};
   }
 
-  PeerOptions options_;
   Vec3 origin_;
   pcl::KdTreeFLANN<pcl::PointXYZ> tree_;
 };

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <nlohmann/json_fwd.hpp>
+#include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
 
@@ -47,12 +47,20 @@ struct PeerOptions {
 /// folder has one, used as its own documentation advises.
 class Peer {
  public:
+  /// about: name, version and settings of the library, as a JSON object.
+  Peer(const PeerOptions& options, nlohmann::json about)
+      : options_(options), about_(std::move(about)) {}
   virtual ~Peer() = default;
-  /// Name, version and settings of the library, as a JSON object.
-  virtual nlohmann::json about() const = 0;
+  const nlohmann::json& about() const { return about_; }
   /// Marks every point that is nearer than the radius to the model at any of the poses. May be
   /// called again.
   virtual void search(std::span<const Pose> poses, std::span<const Vec3> model, Marks& marks) = 0;
+
+ protected:
+  PeerOptions options_;
+
+ private:
+  nlohmann::json about_;
 };
 
 /// Calls search(place) for the places of all model points at all poses. make() makes the `search`

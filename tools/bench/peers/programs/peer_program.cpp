@@ -13,7 +13,6 @@
 #include <exception>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -154,21 +153,20 @@ nlohmann::json run(const Arguments& arguments) {
   const SessionAnswer exact =
       session.search({{model}, poses, {.radius = arguments.options.radius}});
   nlohmann::json out = compare(marks, points, exact.collisions().source);
-  std::vector<double> sorted = seconds;
-  std::sort(sorted.begin(), sorted.end());
-  out["peer"] = peer->about();
-  out["environment_points"] = points.positions.size();
-  out["model_points"] = model.size();
-  out["poses"] = all.size();
-  out["radius"] = arguments.options.radius;
-  out["threads"] = threads;
-  out["every_pose"] = every;
-  out["searched_poses"] = poses.size();
-  out["prepare_seconds"] = prepare;
-  out["search_seconds"] = seconds;
-  out["all_poses_seconds"] = sorted[sorted.size() / 2] * static_cast<double>(all.size()) /
+  out.update({{"peer", peer->about()},
+              {"environment_points", points.positions.size()},
+              {"model_points", model.size()},
+              {"poses", all.size()},
+              {"radius", arguments.options.radius},
+              {"threads", threads},
+              {"every_pose", every},
+              {"searched_poses", poses.size()},
+              {"prepare_seconds", prepare},
+              {"search_seconds", seconds},
+              {"peak_bytes_of_peer", std::max(0.0, peak - before)}});
+  std::ranges::sort(seconds);
+  out["all_poses_seconds"] = seconds[seconds.size() / 2] * static_cast<double>(all.size()) /
                              static_cast<double>(poses.size());
-  out["peak_bytes_of_peer"] = std::max(0.0, peak - before);
   return out;
 }
 

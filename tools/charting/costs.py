@@ -1,0 +1,257 @@
+"""What it costs to know more, by what it grows with: the whole of `clearway check`, searches, seen
+space, sections, and what a search touches."""
+
+import numpy as np
+
+from charting.plot import (bar_look, fixed_ticks, legend_in, line, lines, log_axis, log_panels, panels,
+                           power, rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
+                           with_unit)
+from charting.record import markdown_table
+from charting.sheet import Sheet
+from charting.style import BLUE, ORANGE, SKY, engine_styles, styles_of
+
+# --- The whole of clearway check, by the number of points and by step -------------------------------
+
+STEPS = ("convert", "path", "run", "conflicts", "stations", "report")
+
+
+def draw_check(record):
+    scenes, ways = record.names("scene"), record.names("way")
+    sheet = Sheet(record, "What clearway check takes, from the scan to the report", 3.3, times=())
+    axes, place = panels(sheet, 1, 2, legend_lines=1)
+    whole, steps = axes.flat
+    styles = styles_of(ways)
+    for scene in scenes:
+        lines(sheet, whole, record.where(scene=scene), styles, "way",
+              lambda case: case.seconds("total"), lambda case: case["points"], markersize=4)
+    log_axis(whole.xaxis)
+    seconds_axis(whole.yaxis)
+    whole.set(title="a  the whole check", xlabel="environment points", ylabel="seconds")
+    draw_steps(steps, [max(record.where(way=way), key=lambda case: case["points"]) for way in ways])
+    steps.set_title("b  the steps of the largest scene of each")
+    legend_in(place, styles, 4)
+    sheet.say(f"Scenes: {', '.join(scenes)}, as clearway scene makes them, with the radius of 0.1 m, "
+              "clearances up to 0.3 m, and the profile up to 0.5 m that check asks for by itself. "
+              "The scan is in the page cache, and nothing is made before. Markers: medians.")
+    return sheet
+
+
+def draw_steps(axes, cases):
+    """A bar for each way, of the medians of its steps."""
+    bottom = np.zeros(len(cases))
+    for number, step in enumerate(STEPS):
+        heights = np.array([case.median(step) for case in cases])
+        axes.bar(range(len(cases)), heights, bottom=bottom, label=step, width=0.6,
+                 **bar_look(str(0.25 + 0.12 * number), ("", "", "///", "...", "", "xxx")[number], 0.4))
+        bottom += heights
+    axes.set_xticks(range(len(cases)),
+                    [f"{case['way']},\n{short(case['points'])} points" for case in cases])
+    axes.set(ylabel="seconds", ylim=(0, 1.4 * max(bottom.max(), 1e-3)))
+    axes.legend(loc="upper right", ncols=2)
+
+
+# --- A search, by poses, model points, radius and the points of a cell ------------------------------
+
+
+def draw_scaling(record):
+    sheet = Sheet(record, "Time by poses, model points, radius and cell size (hall)", 5.2,
+                  times=("answer",))
+    axes, place = panels(sheet, 2, 2, legend_lines=1)
+    styles = engine_styles(record.names("engine"))
+    log_panels(sheet, axes.flat, "abcd",
+               (("poses", "poses T"), ("model points", "model points M"), ("radius", "radius (m)"),
+                ("cell points", "points of a cell, at most")), "", "answer (s)",
+               lambda panel, vary: lines(sheet, panel, record.where(vary=vary), styles, "engine",
+                                         lambda case: case.answer_seconds()))
+    legend_in(place, styles, len(styles))
+    sheet.say("All axes are logarithmic.")
+    return sheet
+
+
+# --- Seen space, and what more is asked -------------------------------------------------------------
+
+
+def draw_seen(record):
+    sheet = Sheet(record, "What knowing costs: by question, beams, cubes, path and threads", 7.4,
+                  times=("total",))
+    axes, place = panels(sheet, 3, 2, legend_lines=1)
+    styles = styles_of(record.names("scene"))
+    questions = dict.fromkeys(case["value"] for case in record.where(vary="question"))
+
+    def draw_bar(panel, scene, question, y, height, how):
+        for case in record.measured(vary="question", scene=scene, value=question):
+            x, below, above = spread(case.seconds("total"))
+            panel.barh(y, x, height, xerr=[[below], [above]], **how)
+
+    wide_bars(sheet, axes[0], list(questions), styles, "a  the whole command, by question",
+              "total (s)", draw_bar)
+
+    def draw_lines(panel, vary):
+        for name, style in styles.items():
+            cases = record.where(vary=vary, scene=name)
+            line(sheet, panel, cases, value_of, lambda case: case.seconds("swept", "beams"), style, name)
+            line(sheet, panel, [case for case in cases if case.runs], value_of,
+                 lambda case: case.seconds("swept"), style, name, alpha=0.4)
+
+    log_panels(sheet, axes[1:].flat, "bcde",
+               (("beams", "beams (points of the environment)"), ("cube", "side of a cube (m)"),
+                ("path", "part of the path that is searched"), ("threads", "threads")),
+               "seen space ", "seen space (s)", draw_lines)
+    legend_in(place, styles, len(styles))
+    swept = []  # how many cubes and beams the whole path has
+    for name in styles:
+        for case in record.measured(vary="question", value="seen, 0.2 m", scene=name)[:1]:
+            run = case.runs[-1]
+            swept.append(f"{name}: {run['environment_points']:,} beams, "
+                         f"{run['seen']['swept']:,} cubes swept, {run['seen']['unseen']:,} unseen")
+    sheet.say("a: the whole command, by what is asked. b to e: the part of seen space alone, in "
+              "cubes of 0.2 m where their side is not varied; pale: the part of it that finds the "
+              "swept cubes, so that the distance between the two lines is what the beams take. "
+              + ("; ".join(swept) + "." if swept else ""))
+    return sheet
+
+
+# --- A section, and what the same knowledge costs otherwise -----------------------------------------
+
+METHODS = ("brute force", "200 runs", "section, 1 thread", "section, all threads", "section, GPU")
+
+
+def draw_section(record):
+    sheet = Sheet(record, "Sections: by method, bins, cells, length of the load and threads", 7.4,
+                  times=("search",))
+    axes, place = panels(sheet, 3, 2, legend_lines=1)
+    styles = styles_of(record.names("scene"))
+    methods = [method for method in METHODS
+               if any(seconds_of(record, scene, method) is not None for scene in styles)]
+
+    def draw_bar(panel, scene, method, y, height, how):
+        seconds = seconds_of(record, scene, method)
+        if seconds is not None:
+            panel.barh(y, seconds, height, **how)
+            panel.text(seconds * 1.1, y, f"{seconds:.3g}", va="center", fontsize=6)
+
+    wide = wide_bars(sheet, axes[0], methods, styles, "a  the largest load, by method", "seconds",
+                     draw_bar)
+    wide.set_xscale("log")
+    wide.set_xlim(right=wide.get_xlim()[1] * 2)
+    log_panels(sheet, axes[1:].flat, "bcde",
+               (("bin", "length of a bin (m)"), ("cell", "side of a cell (m)"),
+                ("length", "length of the load (m)"), ("threads", "threads")), "", "search (s)",
+               lambda panel, vary: lines(sheet, panel, record.where(vary=vary), styles, "scene",
+                                         lambda case: case.seconds("search")))
+    legend_in(place, styles, len(styles))
+    brute_force = ("Brute force is computed at some of the poses, on one thread, and scaled to all of "
+                   "them; ") if "brute force" in methods else ""
+    pairs = [f"{case['scene']}: {case.findings['pairs']:.3g} pairs of a point and a pose in reach"
+             for case in record.where(vary="method", value="brute force")]
+    sheet.say(f"a: the time of one answer for all outlines. {brute_force}200 runs are 20 times the whole "
+              "commands of 10 widths, a closed box each. b to e: one section on the CPU, with "
+              "bins of 5 m, cells of 0.02 m, a load of 4.5 m and all threads where these are not "
+              "varied. " + ("; ".join(pairs) + "." if pairs else ""))
+    return sheet
+
+
+def seconds_of(record, scene, method):
+    """The seconds of a method; None where it was not measured."""
+    if method == "200 runs":
+        cases = record.measured(vary="width", scene=scene)
+        if not cases:
+            return None
+        mean = np.mean([np.median(case.values("wall_seconds")) for case in cases])
+        return float(mean) * cases[0]["widths"]
+    for case in record.where(vary="method", value=method, scene=scene):
+        if case.runs:
+            return float(case.median("search", "engine"))
+        if "seconds" in case.findings:
+            return case.findings["seconds"]
+    return None
+
+
+# --- What share of a scene a search touches, and what touching more would cost ----------------------
+
+WAYS = {"as it is": "as it is", "all cells": "every cell read", "whole field": "whole field made",
+        "poses one by one": "every pose by itself"}
+
+
+def shares(record, scene):
+    """Rows (what, touched, all)."""
+    found = record.where(scene=scene, way="as it is")[0].findings
+    pairs = found["points"] * found["poses"]
+    rows = [("cells read", found["cells_read"], found["cells"]),
+            ("bytes read", found["bytes_read"], found["bytes"]),
+            ("points looked at one by one", found["points_tested"], found["points"]),
+            ("bricks of the field made", found["bricks_made"], found["bricks"]),
+            ("pairs of point and pose looked up", found["point_tests"], pairs),
+            ("pairs searched in the model", found["exact_tests"], pairs)]
+    for on_gpu in record.measured(scene=scene, way="GPU")[:1]:
+        rows.append(("GPU memory, of the points as floats",
+                     max(run["peak_device_bytes"] for run in on_gpu.runs), 12 * found["points"]))
+    return rows
+
+
+def seconds_by_way(record, scene):
+    taken = {case["way"]: case.findings["seconds"] for case in record.where(scene=scene)
+             if "seconds" in case.findings}
+    return {way: taken[way] for way in WAYS if way in taken}
+
+
+def draw_share(record):
+    scenes = record.names("scene")
+    sheet = Sheet(record, "What a search touches, and what touching more costs", 1.75 * len(scenes),
+                  times=())
+    axes, _ = panels(sheet, len(scenes), 2)
+    for letter, scene, (touched, cost) in zip("abcd", scenes, axes):
+        draw_shares(touched, shares(record, scene))
+        draw_cost(cost, seconds_by_way(record, scene))
+        touched.set_title(f"{letter}  {scene}")
+    sheet.say("Left: what the search of the set touches on the CPU, as a share of all there is, "
+              "logarithmic; beside the bars the numbers. Right: seconds of plan, field and search, "
+              "median of the runs, when it is made to read and search every cell, to make the whole "
+              "model field before, or to answer every pose as a question of its own, with the "
+              "field kept (the mean of 64 poses, scaled).")
+    return sheet
+
+
+def draw_shares(axes, rows):
+    values = [touched / every if every else 0 for _, touched, every in rows]
+    low = 10.0 ** (np.floor(np.log10(min(value for value in values if value > 0))) - 0.3)
+    for y, ((_, touched, every), value) in enumerate(zip(rows, values)):
+        axes.barh(y, max(value, low), left=0, height=0.62, **bar_look(SKY, linewidth=0.4))
+        inside = value > 1e-3
+        axes.annotate(f"{short(touched)} of {short(every)}", (value, y), (-3 if inside else 3, 0),
+                      textcoords="offset points", ha="right" if inside else "left", va="center")
+    axes.set_xscale("log")
+    axes.set_xlim(low, max(1, *values))
+    rows_of_bars(axes, [what for what, *_ in rows])
+    decades = range(int(np.ceil(np.log10(low))), 1, 2 if low < 1e-5 else 1)
+    fixed_ticks(axes.xaxis, [10.0**i for i in decades], power)
+
+
+def draw_cost(axes, taken):
+    for y, (way, seconds) in enumerate(taken.items()):
+        look = bar_look(BLUE, "", 0.4) if way == "as it is" else bar_look(ORANGE, "////", 0.4)
+        axes.barh(y, seconds, height=0.62, **look)
+        axes.annotate(with_unit(seconds, "s"), (seconds, y), (3, 0), textcoords="offset points",
+                      va="center")
+    axes.set_xlim(min(taken.values()) / 3, max(taken.values()) * 6)
+    seconds_axis(axes.xaxis)
+    rows_of_bars(axes, [WAYS[way] for way in taken])
+    axes.set_xlabel("seconds")
+
+
+def share_markdown(record):
+    """The same numbers as a Markdown table."""
+    scenes = record.names("scene")
+    rows = []
+    for cells in zip(*(shares(record, scene) for scene in scenes)):
+        rows.append([cells[0][0], *(
+            f"{touched:,} of {every:,} ({percent(touched / every if every else 0)})"
+            for _, touched, every in cells)])
+    taken = [seconds_by_way(record, scene) for scene in scenes]
+    rows += [[name, *(with_unit(of[way], "s") if way in of else "" for of in taken)]
+             for way, name in WAYS.items()]
+    return markdown_table(["", *scenes], rows)
+
+
+def percent(share):
+    return f"{float(f'{100 * share:.2g}'):.9g} %"
