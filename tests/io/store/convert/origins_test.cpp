@@ -150,6 +150,7 @@ TEST_CASE("origins at zero and far away are warned of") {
   scan.options.strict = true;
   check_says(scan.refusal(), "origins-far");
   // Far means a kilometre, which 3,200 feet are not.
+  scan.options.strict = false;
   scan.options.unit = kMetresPerFoot;
   scan.give(kOriginsHeader + "0,1,0,0\n50,0,3200,0\n");
   check_equal(codes_of(scan.convert().warnings), "");

@@ -121,6 +121,7 @@ TEST_CASE("points that the path does not reach have no origin and are warned of"
   check_says(report.warnings[1].text,
              "4 of 10 points ... 2 are from before ... 1 from after ... 1 from between poses more "
              "than 1 s apart ... 1 such gap, the longest of 1.5 s");
+  check_says(report.warnings[2].text, "5 of 11 points (45. ... %) have no origin");
   REQUIRE(report.origins_path);
   check_equal(report.origins_path->before, 2);
   check_equal(report.origins_path->after, 1);
