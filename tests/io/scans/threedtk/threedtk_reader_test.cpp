@@ -1,6 +1,7 @@
 // How 3DTK's axes and poses become ours; its files are in tests/formats/threedtk.case.
-#include "io/scans/threedtk/threedtk_frame.hpp"
 #include "io/scans/threedtk/threedtk_reader.hpp"
+
+#include "io/scans/threedtk/threedtk_frame.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 #include "support/reader_fixture.hpp"
