@@ -153,7 +153,7 @@ TEST_CASE("origins at zero and far away are warned of") {
   scan.options.strict = false;
   scan.options.unit = kMetresPerFoot;
   scan.give(kOriginsHeader + "0,1,0,0\n50,0,3200,0\n");
-  check_equal(codes_of(scan.convert().warnings), "");
+  check_equal(codes_of(scan.convert().warnings), "feet");
 }
 
 TEST_CASE("more origins than the memory may hold are refused with a number") {
