@@ -36,8 +36,7 @@ export OMP_WAIT_POLICY=passive
 log=build/release/ctest.log
 status=0
 # Which two properties of each question are tried (tests/commands/README.md); all of them if it is empty.
-CLEARWAY_DRAW=${CLEARWAY_DRAW-$(git rev-parse HEAD 2>/dev/null || true)}
-[ -z "$CLEARWAY_DRAW" ] || export CLEARWAY_DRAW
+export CLEARWAY_DRAW=${CLEARWAY_DRAW-$(git rev-parse HEAD 2>/dev/null || true)}
 # Two more than there are cores, since some wait for others to end or to be killed.
 ctest --test-dir build/release "${which[@]}" --output-on-failure -j $(($(nproc) + 2)) 2>&1 | tee "$log" || status=$?
 # Tests of optional programs, as Slurm's, may skip; tests on real scans may not when these are given.

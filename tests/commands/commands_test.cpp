@@ -209,7 +209,7 @@ class Run {
 
   /// Tries what holds of every question: `run` with these arguments, which has ended. Two
   /// properties are drawn by CLEARWAY_DRAW, such as a commit, and the question; all where it is not
-  /// set.
+  /// set, or empty.
   void try_properties(const std::string& arguments) const {
     using Property = void (Run::*)(const std::string& arguments) const;
     const std::pair<const char*, Property> all[] = {
@@ -218,8 +218,9 @@ class Run {
         {"a run that is resumed leaves its result as it is", &Run::resumed},
         {"its result is sound", &Run::verified}};
     const char* const draw = std::getenv("CLEARWAY_DRAW");
-    const std::size_t first = draw != nullptr ? std::hash<std::string>()(draw + arguments) : 0;
-    const std::size_t count = draw != nullptr ? 2 : std::size(all);
+    const bool draws = draw != nullptr && *draw != 0;
+    const std::size_t first = draws ? std::hash<std::string>()(draw + arguments) : 0;
+    const std::size_t count = draws ? 2 : std::size(all);
     for (std::size_t i = 0; i < count; ++i) {
       const auto& [name, holds] = all[(first + i) % std::size(all)];
       const RowName property(name);

@@ -42,9 +42,7 @@ LasBytes::Record wkt(const std::string& text) { return {"LASF_Projection", 2112,
 
 TEST_CASE("withheld points are told by convert and info, from files and from standard input") {
   const Workplace work;
-  LasBytes las;
-  las.minor = 4;
-  las.format = 6;
+  LasBytes las{.minor = 4, .format = 6};
   las.points = cube_cloud(200, -3000, 3000, 1);
   for (unsigned i = 0; i < 200; ++i) {
     las.bytes_of_flags.push_back(i % 4 == 3 ? 4 : i % 4 == 2 ? 9 : 0);
@@ -74,10 +72,7 @@ TEST_CASE("withheld points are told by convert and info, from files and from sta
 
 TEST_CASE("convert --origins-path gives a moving scanner's points their origins, and says how") {
   const Workplace work;
-  LasBytes las;
-  las.format = 6;
-  las.minor = 4;
-  las.global_encoding = 1;
+  LasBytes las{.minor = 4, .format = 6, .global_encoding = 1};
   las.scale = {0.001, 0.001, 0.001};
   las.offset = {0, 0, 0};
   las.points = {{5000, 0, 0}, {6000, 0, 0}, {7000, 0, 0}, {8000, 0, 0}};
@@ -129,10 +124,7 @@ TEST_CASE("LAZ from a file and from standard input makes the store of its LAS tw
 
 TEST_CASE("standard input makes the store of the file but for the description of its source") {
   const Workplace work;
-  LasBytes las;
-  las.minor = 4;
-  las.format = 6;
-  las.global_encoding = 16;
+  LasBytes las{.minor = 4, .format = 6, .global_encoding = 16};
   las.points = cube_cloud(5000, -3000, 3000, 1);
   las.evlrs = {wkt(R"(LOCAL_CS["m",UNIT["metre",1]])")};
   work.put("a.las", las.build());
