@@ -142,7 +142,7 @@ TEST_CASE("a run with all questions, stopped again and again, has the bytes of o
       int pages = 0;
       std::string stage;
       std::uint64_t before = 0;
-      SearchOptions options{.threads = threads, .resume = runs > 0};
+      SearchOptions options{.device = Device::kCpu, .threads = threads, .resume = runs > 0};
       options.stop = &stop;
       options.progress = [&](const ProgressUpdate& now) {
         if (stage != now.stage) before = 0;

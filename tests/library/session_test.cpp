@@ -97,7 +97,7 @@ TEST_CASE("a session on a GPU gives the bytes of the CPU") {
     WARN("no GPU here, so nothing is asked of one");
     return;
   }
-  const Asked asked(3, 211, false);
+  const Asked asked(3, 61, false);
   // With 64 MiB questions wait for each other, and with 24 MiB nothing can stay on the GPU.
   for (const std::uint64_t mebibytes : {0, 64, 24}) {
     CAPTURE(mebibytes);
