@@ -43,8 +43,8 @@ install_missing_packages() {
 # where CLEARWAY_WERROR=ON, as in .ci/run: those of a newer compiler should not stop anybody else.
 # Kernels are compiled for the GPU that is here. Where there is none they become PTX, which the
 # driver of any GPU since the H100 translates when the program starts there; that takes half the time.
-# CLEARWAY_QUICK_KERNELS=ON, as in .ci/run, compiles such PTX in a third of the time, for slow kernels
-# that nobody is to run.
+# CLEARWAY_QUICK_KERNELS=ON, as in .ci/run, compiles such PTX in a third of the time, and makes a program
+# that takes no GPU, because kernels that are compiled in this way fail on one.
 configure_release() {
   local architecture=90-virtual quick=${CLEARWAY_QUICK_KERNELS:-OFF}
   if nvidia-smi >/dev/null 2>&1; then
