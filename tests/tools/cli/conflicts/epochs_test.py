@@ -164,7 +164,9 @@ class Epochs(Scratch):
                 ("another path", a, Epoch(POLES, path="beside.txt"), 6, "not_searched 2",
                  f"{not_searched} 2 places", "path"),
                 ("shorter path", a, Epoch([], path="half.txt"), 6, "gone 1, not_searched 1",
-                 f"{not_searched} 1 place", "path")):
+                 f"{not_searched} 1 place", "path"),
+                ("pole that the last pose of a shorter path reaches", Epoch([pole(31.5)]),
+                 Epoch([], path="half.txt"), 0, "gone 1", "no new conflicts")):
             self.check_pair(*row)
 
     def test_the_floors_of_a_vehicles_bodies_are_compared_body_by_body(self):
