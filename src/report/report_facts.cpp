@@ -193,7 +193,7 @@ void add_finding(Json& json, const Column& column, const Row& row) {
   } else if constexpr (requires { name_of(*value); }) {
     json[column.key] = value ? Json(name_of(*value)) : Json();
   } else if constexpr (requires { value.has_value(); }) {
-    if (value || !column.is_left_out) json[column.key] = or_null(value);
+    if (value || !column.use.is_left_out) json[column.key] = or_null(value);
   } else {
     json[column.key] = value;
   }
@@ -213,7 +213,7 @@ std::string remedy_of(const Conflict& conflict, const ReportFacts& facts) {
 Json json_of(const Conflict& conflict, const ReportFacts& facts) {
   Json out = Json::object();
   for_each_field(kConflictColumns, [&](const auto& column) {
-    if (column.is_in_files) add_finding(out, column, conflict);
+    if (column.use.is_in_files) add_finding(out, column, conflict);
   });
   if (conflict.certain) out["class"] = *conflict.certain ? "certain" : "possible";
   out["classified"] = class_words(conflict);

@@ -86,7 +86,7 @@ NAMES = {"src/core/sweep.hpp": "struct SweepTree { int find_all(int); };\n"
 REASONS = {"src/answer.cpp": "const char* name_of(Reason reason) {\n  switch (reason) {\n" +
            "".join(f'    return "{name}";\n' for name in ("near", "few", "unseen", "unknown", "doubt")) +
            "  }\n}\n"}
-CODES = {TABLE: '{"feet", kWarning, kScans, "In feet."},\n',
+CODES = {TABLE: '{"feet", kWarning},\n',
          "src/a.cpp": 'log.warn(\n  "feet", x);  // "gone"\n'}
 COMMAND_LINE = "docs/guide/command-line.md"
 
@@ -146,7 +146,7 @@ ROWS = [
     (CODES, ()),
     ({**CODES, "src/b.cpp": 'return {Message::Severity::kNote, "feet"};\n'},
      ("src/b.cpp:1: a message that is made by hand",)),
-    ({**CODES, TABLE: '{"feet", kWarning, kScans},\n{"gone", kNote, kScans},\n'},
+    ({**CODES, TABLE: '{"feet", kWarning},\n{"gone", kNote},\n'},
      (f"{TABLE}: gone: no source gives",)),
 ]
 

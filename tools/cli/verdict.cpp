@@ -304,7 +304,7 @@ ordered_json seen_json(const Answer& answer) {
   if (!answer.seen) return nullptr;
   ordered_json out;
   for_each_field(kSeenColumns, [&](const auto& column) {
-    if (column.is_in_files) out[column.key] = column.of(*answer.seen);
+    if (column.use.is_in_files) out[column.key] = column.of(*answer.seen);
   });
   return out;
 }

@@ -46,7 +46,7 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
     fields.push_back({name + "_z", v.z, true});
   };
   for_each_field(columns, [&](const auto& column) {
-    if (!column.is_in_files) return;
+    if (!column.use.is_in_files) return;
     const std::string key = column.key;
     const auto& value = column.of(row);
     using Value = std::decay_t<decltype(value)>;
@@ -68,12 +68,12 @@ void add_fields(std::vector<ConflictField>& fields, const std::tuple<Columns...>
     } else if constexpr (std::is_same_v<Value, double>) {
       fields.push_back({key, value, true});
     } else if constexpr (std::is_same_v<Value, std::optional<double>>) {
-      if (value || !column.is_left_out)
-        fields.push_back({key, value_of(value), true, column.rounds_up});
+      if (value || !column.use.is_left_out)
+        fields.push_back({key, value_of(value), true, column.use.rounds_up});
     } else if constexpr (std::is_unsigned_v<Value>) {
       fields.push_back({key, std::uint64_t{value}});
     } else if constexpr (requires { std::uint64_t{*value}; }) {
-      if (value || !column.is_left_out) {
+      if (value || !column.use.is_left_out) {
         fields.push_back({key, value_of<std::uint64_t>(value)});
       }
     }

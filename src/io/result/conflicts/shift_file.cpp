@@ -110,7 +110,7 @@ class ShiftReader {
   StretchShift row(const KeyReader& of) const {
     StretchShift out;
     for_each_field(kShiftColumns, [&](const auto& column) {
-      if (column.is_in_files) read(of.at(column.key), column.of(out));
+      if (column.use.is_in_files) read(of.at(column.key), column.of(out));
     });
     const KeyReader codes = of.at(kWarnedOf);
     if (!codes.value().is_array()) codes.refuse("expected a list, in brackets");
