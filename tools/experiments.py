@@ -46,7 +46,7 @@ SMALL = {"mine": (4_000_000, 10_000, 1_800), "hall": (1_110_000, 20_000, 1_700),
 # Seconds of a case after which it is not repeated.
 ENOUGH = {"smoke": 3, "small": 3, "full": 30}
 # Options that only clearway-bench search has.
-SETTINGS = ("--tolerance", "--field-voxel", "--grid-cell", "--precision")
+SETTINGS = ("--field-voxel", "--grid-cell", "--precision")
 MEMORY = r"--(device-)?memory( \d+ is enough)?\s*$"
 NON_RIGID = "--allow-non-rigid accepts"
 
@@ -481,8 +481,6 @@ def accuracy(bench):
         for engine in (bench.engine("kdtree cpu"), fast, forward, *bench.slow([single])):
             measure(("exact" if engine.exact else "float") + ", far origin", engine, name,
                     lambda: bench.shifted(hall, *far))
-    for value in bench.some(("1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.05")):
-        measure("tolerance", fast, value, more=("--tolerance", value))
     thin = bench.work / "thinned-model.ply"
     for voxel in bench.some((0.005, 0.01, 0.02, 0.05)):
         def thinned():

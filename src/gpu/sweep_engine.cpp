@@ -150,7 +150,7 @@ class SweepSearch final : public CudaPageSearch {
     check_cuda(cudaMemcpy(values, on_device_.tallies, sizeof(values), cudaMemcpyDeviceToHost));
     SweepStatistics total;
     for (std::size_t i = 0; i < SweepOnDevice<Element>::kTallies; i += kSweepCounts) {
-      total.add({values[i], values[i + 1], values[i + 2], values[i + 3], values[i + 4]});
+      total.add({values[i], values[i + 1], values[i + 2], values[i + 3]});
     }
     return total;
   }

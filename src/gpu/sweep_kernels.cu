@@ -30,7 +30,6 @@ __device__ void tally(unsigned long long* tallies, const SweepStatistics& of_lan
   tally(total + 1, of_lane.point_tests);
   tally(total + 2, of_lane.exact_tests);
   tally(total + 3, of_lane.points_tested);
-  tally(total + 4, of_lane.resolved_tests);
 }
 
 /// Searches the blocks of the page's cells, one by each warp.

@@ -11,7 +11,7 @@ namespace clearway {
 
 /// Number of counts in a SweepStatistics, which keep its order, and number of places in which they
 /// are added up: several, so that warps seldom wait for each other.
-constexpr std::uint32_t kSweepCounts = 5;
+constexpr std::uint32_t kSweepCounts = 4;
 constexpr std::uint32_t kSweepTallies = 64;
 
 /// Number of thread blocks of search_sweep() that a device can hold at a time. Throws

@@ -287,7 +287,7 @@ TEST_CASE("points that are each touched by exactly one pose lose no hit among th
     for (std::int32_t i = 0; i < pitch; ++i) query.poses.push_back(translation({1.0 * i, 0.1, 0}));
     for (const Engine& engine : engines()) {
       CAPTURE(engine.name, teeth);
-      CHECK(engine.run(cloud, query, 8, 0).hits.count() == kPoints);
+      CHECK(engine.run(cloud, query, 8).hits.count() == kPoints);
     }
   }
 }

@@ -17,7 +17,7 @@
 namespace clearway {
 namespace {
 
-SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int threads, double) {
+SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   const auto slots = 1 + static_cast<std::uint32_t>(cloud.cells().size() % 3);
   return run_grid(cloud, query, {.slots = slots, .threads = threads},
                   [&](const GridScene& scene, const SlotLayout& layout, const RunIn& run_in) {
@@ -29,10 +29,9 @@ SearchResult grid_on_cuda(const PackedCloud& cloud, const Query& query, int thre
                   });
 }
 
-SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads,
-                           double tolerance) {
+SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
   return run_sweep(
-      cloud, query, threads, tolerance,
+      cloud, query, threads,
       []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                            const SlotLayout& layout) {
         const SweepRefOf<Element>& sweep = filter.ref();
@@ -46,8 +45,7 @@ SearchResult sweep_on_cuda(const PackedCloud& cloud, const Query& query, int thr
 
 /// Searches twice with the same cells kept on the device, where there is room for about a half of
 /// them, and returns the second answer.
-SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads,
-                                   double tolerance) {
+SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query, int threads) {
   std::uint64_t bytes = 0;
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     bytes += ArrayRun::aligned(cloud.packed_bytes(cell) + kPagePadding);
@@ -55,7 +53,7 @@ SearchResult sweep_with_kept_cells(const PackedCloud& cloud, const Query& query,
   const auto kept = std::make_shared<KeptOnDevice>(0, cloud, bytes + (1 << 12));
   const auto search = [&] {
     return run_sweep(
-        cloud, query, threads, tolerance,
+        cloud, query, threads,
         [&kept]<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                   const SlotLayout& layout) {
           const auto field = std::make_shared<int>();

@@ -73,8 +73,6 @@ void add_search(CLI::App& program) {
   const auto length = [&](const std::string& name, double& metres, const char* help) {
     command.add_option(name, metres, help)->type_name("METRES")->transform(tool::positive_length());
   };
-  length("--tolerance", options.settings.tolerance,
-         "Engine sweep may decide wrongly for points within this of the radius");
   length("--field-voxel", options.settings.field_voxel,
          "Voxel of the sweep engine's model field (default: chosen)");
   length("--grid-cell", options.settings.grid.grid_cell,

@@ -14,8 +14,7 @@ from charting.style import (BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, YELLOW, Sty
 # --- Exact and approximate methods ------------------------------------------------------------------
 
 # What a method's value is called beside a marker and in the legend.
-METHODS = {"tolerance": ("t", "tolerance t (m)"),
-           "model thinned": ("v", "model thinned to a voxel v (m)"),
+METHODS = {"model thinned": ("v", "model thinned to a voxel v (m)"),
            "every nth pose": ("n", "every n-th pose"),
            "environment quantised": ("q", "environment quantised to q (m)")}
 # Of surfaces: how it is called in the legend.

@@ -135,8 +135,7 @@ std::uint64_t BlockDescentOf<Element>::look(std::uint32_t index, std::uint64_t w
     const auto near = [&] {
       return (may_touch & bit(of_point)) != 0 ? lanes_.near(of_point) : ModelFieldRef::kNone;
     };
-    const SweepVerdict verdict =
-        sweep_.judge(e, node, side, lanes_.place(of_point), lower, near, *statistics_);
+    const SweepVerdict verdict = sweep_.judge(e, node, side, lanes_.place(of_point), lower, near);
     if (verdict == SweepVerdict::kDismissed) return;
     if (verdict == SweepVerdict::kHitAtMid) keep_hit(i, sweep_.first_pose_of_hit(node.mid));
     if (node.count > 1) {

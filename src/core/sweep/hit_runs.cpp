@@ -17,8 +17,7 @@ constexpr double kSpacingOfRadius = 0.5;
 
 template <typename Element>
 bool HitRuns<Element>::is_available() const {
-  return kIsTriangle<Element> && model_.size() <= kMostTriangles && !sweep_.between_poses &&
-         !(sweep_.resolved_from < sweep_.radius);
+  return kIsTriangle<Element> && model_.size() <= kMostTriangles && !sweep_.between_poses;
 }
 
 /// Counts twice as many packets as full ones would be, because packets may be half empty.

@@ -23,7 +23,7 @@ namespace clearway {
 template <typename Element>
 class HitRuns {
  public:
-  /// sweep: of a query without between_poses and tolerance. All arguments must outlive this object.
+  /// sweep: of a query without between_poses. All arguments must outlive this object.
   HitRuns(const MotionTree& motion, const ModelTreeOf<StoredElement<Element>>& model,
           const SweepRefOf<Element>& sweep)
       : motion_(motion), model_(model), sweep_(sweep) {}

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/query/search_result.hpp"
-#include "core/sweep/tolerance.hpp"
 #include "core/util/bit_reversal_order.hpp"
 
 namespace clearway {
@@ -14,11 +13,12 @@ namespace {
 
 using Verdict = SweepVerdict;
 
-double rounding_of(const Query& query, double radius, const MotionTree& motion,
-                   const ModelField& field, const PackedCloud& cloud) {
+double rounding_of(const Query& query, const MotionTree& motion, const ModelField& field,
+                   const PackedCloud& cloud) {
   // Rounding of the question for the inside, expressed as an additional margin of the lattice.
   const double lattice = field.margin() + field.inside_rounding() / (1024 * kUnitRoundoff);
-  const double rounding = motion.rounding(largest_coordinate(cloud) + radius, lattice) + 1e-150;
+  const double rounding =
+      motion.rounding(largest_coordinate(cloud) + query.radius, lattice) + 1e-150;
   // Between poses: the part of a computed hit's error that does not grow with the step.
   return query.between_poses ? rounding + 8 * kUnitRoundoff * query.radius : rounding;
 }
@@ -50,7 +50,7 @@ template <typename Element>
 SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& motion,
                                       const ModelTreeOf<StoredElement<Element>>& model,
                                       const ModelField& field, const PackedCloud& cloud,
-                                      int threads, double tolerance)
+                                      int threads)
     : query_(query),
       motion_(motion),
       model_(model),
@@ -58,14 +58,12 @@ SweepFilterOf<Element>::SweepFilterOf(const Query& query, const MotionTree& moti
            .model = model.ref(),
            .field = field.ref(),
            .wide = {},
-           .radius = search_radius(query.radius, tolerance),
-           .resolved_from = query.radius,
+           .radius = query.radius,
            .clearance = query.clearance,
            .profile = query.profile,
            .open_area =
                kOpenArea * spacing_of(model, query.clearance) * spacing_of(model, query.clearance),
-           .rounding =
-               rounding_of(query, search_radius(query.radius, tolerance), motion, field, cloud),
+           .rounding = rounding_of(query, motion, field, cloud),
            .first_pose = query.first_pose,
            .between_poses = query.between_poses},
       runs_(motion, model, ref_) {

@@ -26,11 +26,10 @@ template <typename Element>
 class SweepFilterOf final : public PoseReach {
  public:
   /// All arguments must outlive this object. cloud: for the largest coordinates, which the rounding
-  /// bound needs. threads: number of threads to build with. tolerance: within which an answer may
-  /// be wrong, metres; above 0 only in experiments, for a query of colliding points alone.
+  /// bound needs. threads: number of threads to build with.
   SweepFilterOf(const Query& query, const MotionTree& motion,
                 const ModelTreeOf<StoredElement<Element>>& model, const ModelField& field,
-                const PackedCloud& cloud, int threads = 1, double tolerance = 0);
+                const PackedCloud& cloud, int threads = 1);
 
   const Query& query() const { return query_; }
   const SweepRefOf<Element>& ref() const { return ref_; }

@@ -16,25 +16,22 @@ namespace clearway {
 
 /// Counts of the steps that a descent took.
 struct SweepStatistics {
-  std::uint64_t node_tests = 0;      ///< field look-ups for cells, runs of blocks and blocks
-  std::uint64_t point_tests = 0;     ///< field look-ups for points
-  std::uint64_t exact_tests = 0;     ///< ball searches in the model
-  std::uint64_t points_tested = 0;   ///< points that no block dismissed
-  std::uint64_t resolved_tests = 0;  ///< ball searches that a tolerance saved
+  std::uint64_t node_tests = 0;     ///< field look-ups for cells, runs of blocks and blocks
+  std::uint64_t point_tests = 0;    ///< field look-ups for points
+  std::uint64_t exact_tests = 0;    ///< ball searches in the model
+  std::uint64_t points_tested = 0;  ///< points that no block dismissed
 
   CLEARWAY_HD void add(const SweepStatistics& other) {
     node_tests += other.node_tests;
     point_tests += other.point_tests;
     exact_tests += other.exact_tests;
     points_tested += other.points_tested;
-    resolved_tests += other.resolved_tests;
   }
 
   /// The counts added since an earlier state.
   CLEARWAY_HD SweepStatistics since(const SweepStatistics& earlier) const {
     return {node_tests - earlier.node_tests, point_tests - earlier.point_tests,
-            exact_tests - earlier.exact_tests, points_tested - earlier.points_tested,
-            resolved_tests - earlier.resolved_tests};
+            exact_tests - earlier.exact_tests, points_tested - earlier.points_tested};
   }
 };
 
@@ -100,9 +97,7 @@ struct SweepRefOf {
   ModelFieldRef field;
   /// Wide tree of the model's elements; set only with a clearance and, for points, with a profile
   WideTreeRefOf<StoredElement<Element>> wide;
-  double radius;  ///< points strictly closer than this are hits; with a tolerance, search_radius()
-  /// A distance of at most the radius: a point this far at a single pose need not be a hit
-  double resolved_from;
+  double radius;     ///< points strictly closer than this are hits, metres
   double clearance;  ///< metres; 0: not asked for
   double profile;    ///< metres; 0: not asked for
   double open_area;  ///< square metres: bound on a chord's error times the distance
@@ -174,11 +169,8 @@ struct SweepRefOf {
   }
 
   /// Whether a box may be accepted as a whole: every point that collides is marked alike, and
-  /// nothing else is asked about it. Not with a tolerance, because the answer would then depend on
-  /// the box.
-  CLEARWAY_HD bool accepts_boxes() const {
-    return !first_pose && !(clearance > 0) && !(resolved_from < radius);
-  }
+  /// nothing else is asked about it.
+  CLEARWAY_HD bool accepts_boxes() const { return !first_pose && !(clearance > 0); }
 
   /// Greatest distance from a curve, wrong by at most `error`, at which an element of the model can
   /// lie that is within `reach` at one of its poses. The poses shrink no distance by more than the
@@ -279,8 +271,7 @@ struct SweepRefOf {
     const Vec3 x = motion.inverse_poses[node.mid].apply(e);
     const ModelFieldRef::Bounds bounds = field.bounds(x);
     squared_lower = bounds.squared_lower;
-    return judge(
-        e, node, side, x, squared_lower, [&] { return bounds.near; }, statistics);
+    return judge(e, node, side, x, squared_lower, [&] { return bounds.near; });
   }
 
   /// The distance from the model at the middle pose beyond which nothing collides at any of a
@@ -293,7 +284,7 @@ struct SweepRefOf {
   /// by the middle pose; squared_lower, near(): the field's bounds there.
   template <typename Near>
   CLEARWAY_HD Verdict judge(const Vec3& e, const MotionNode& node, FloorSide side, const Vec3& x,
-                            double squared_lower, Near near, SweepStatistics& statistics) const {
+                            double squared_lower, Near near) const {
     const bool counts_at_mid = side == FloorSide::kAbove;
     const InversePose& back = motion.inverse_poses[node.mid];
     if (farther(back.least, squared_lower, reach_of(node))) {
@@ -306,12 +297,6 @@ struct SweepRefOf {
           collides(e, transform(motion.poses[node.mid], model.elements[element]), radius)) {
         return Verdict::kHitAtMid;
       }
-    }
-    // Only at single poses, because the answer must not depend on which nodes are looked at.
-    if (resolved_from < radius && node.count == 1 &&
-        farther(back.least, squared_lower, resolved_from + rounding)) {
-      ++statistics.resolved_tests;
-      return Verdict::kDismissed;
     }
     return Verdict::kOpen;
   }
@@ -341,7 +326,7 @@ struct SweepRefOf {
     if constexpr (kIsSolid<Element>) {
       if (field.inside.solids.contains(pulled_back(pose, e))) return true;
     }
-    const double ball = (resolved_from + rounding) / back.least * kRoundedUp;
+    const double ball = (radius + rounding) / back.least * kRoundedUp;
     return model.any_within(back.apply(e), ball * ball * kRoundedUp, [&](const Element& m) {
       return collides(e, transform(pose, m), radius);
     });

@@ -30,10 +30,9 @@ using EngineEnd = std::vector<std::future<void>>;
 /// at the same time.
 inline constexpr std::uint32_t kSlotsAhead = 2;
 
-/// Settings of the engines that only experiments change. With a tolerance or in single precision an
-/// answer is not exact.
+/// Settings of the engines that only experiments change. In single precision an answer is not
+/// exact.
 struct EngineSettings {
-  double tolerance = 0;    ///< of engine sweep, metres: core/sweep/tolerance.hpp
   double field_voxel = 0;  ///< step of the model field of engine sweep, metres; 0: chosen
   GridOptions grid = {};
 };

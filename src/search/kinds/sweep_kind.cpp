@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/sweep/tolerance.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "cpu/sweep_engine.hpp"
@@ -40,12 +39,10 @@ constexpr double kLeastFineness = 0.25;
 
 }  // namespace
 
-/// With a tolerance there is one size only, because the result depends on the field, which memory
-/// must not decide.
 template <typename Element>
 std::vector<PageEngineKind::IndexSize> SweepKindOf<Element>::index_sizes() const {
   constexpr std::uint64_t kMost = std::uint64_t{64} << 20, kLeast = std::uint64_t{1} << 20;
-  if (settings_.field_voxel > 0 || settings_.tolerance > 0) return {{kMost, 0}};
+  if (settings_.field_voxel > 0) return {{kMost, 0}};
   return {size_of(64), size_of(16), size_of(4), {kLeast, 0}};
 }
 
@@ -56,26 +53,24 @@ const PoseReach& SweepKindOf<Element>::build_index(const QueryTrees& trees,
   filter_.reset();
   field_.reset();
   field_ = trees.model->field<Element>(
-      search_radius(query_.radius, settings_.tolerance),
+      query_.radius,
       ModelFieldOptions{.voxel = settings_.field_voxel,
                         .fineness = trees.of_session ? fineness_ : fineness_for_query(),
-                        .cheaply_finer = !(settings_.tolerance > 0),
+                        .cheaply_finer = true,
                         .reach = std::max(query_.clearance, query_.profile),
                         .most_bytes = most_bytes,
                         .by_need = !this->needs().on_gpu},
       options_.threads);
   return filter_.emplace(query_, trees.motion, trees.of<Element>(), *field_, cloud_,
-                         QueryTrees::threads_for_poses(query_, options_.threads),
-                         settings_.tolerance);
+                         QueryTrees::threads_for_poses(query_, options_.threads));
 }
 
 /// The fineness of the field, which is coarser for few poses and, on the CPU, for a small scan
 /// beside a model of many points, because few exact tests are spared then by a field that costs
-/// more to make. It is not coarser with a tolerance, where the result depends on the field, nor
-/// with clearances or a profile, which ask more of it.
+/// more to make. It is not coarser with clearances or a profile, which ask more of it.
 template <typename Element>
 double SweepKindOf<Element>::fineness_for_query() const {
-  if (settings_.tolerance > 0 || query_.clearance > 0 || query_.profile > 0) return fineness_;
+  if (query_.clearance > 0 || query_.profile > 0) return fineness_;
   const auto poses = static_cast<double>(query_.poses.size());
   const double share = std::min(poses / kPosesOfFullFineness, 1.0) * share_of_points();
   return fineness_ * std::max(std::cbrt(share), kLeastFineness);
@@ -92,9 +87,6 @@ void SweepKindOf<Element>::log_statistics(const SweepStatistics& s, const Messag
   log.note("tests: " + format_count(s.node_tests) + " of boxes, " + format_count(s.point_tests) +
            " of points (" + format_count(s.points_tested) + " points), " +
            format_count(s.exact_tests) + " exact");
-  if (s.resolved_tests > 0) {
-    log.note("tolerance: " + format_count(s.resolved_tests) + " exact tests spared by bounds");
-  }
 }
 
 template <typename Element>

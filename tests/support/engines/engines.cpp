@@ -15,16 +15,16 @@ namespace clearway {
 using namespace test;
 namespace {
 
-SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads, double) {
+SearchResult kdtree(const PackedCloud& cloud, const Query& query, int threads) {
   return run_kdtree(cloud, query, {.threads = threads});
 }
 
-SearchResult grid(const PackedCloud& cloud, const Query& query, int threads, double) {
+SearchResult grid(const PackedCloud& cloud, const Query& query, int threads) {
   return run_grid(cloud, query, {.threads = threads});
 }
 
-SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance) {
-  return run_sweep(cloud, query, threads, tolerance,
+SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads) {
+  return run_sweep(cloud, query, threads,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                         const SlotLayout& layout) {
                      const bool in_place = layout.cells % 2 == 0;
@@ -34,9 +34,8 @@ SearchResult sweep(const PackedCloud& cloud, const Query& query, int threads, do
 
 /// Runs the kernels' bodies of the CUDA sweep engine as loops, with lists of open work from ample
 /// to none.
-SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads,
-                              double tolerance) {
-  return run_sweep(cloud, query, threads, tolerance,
+SearchResult sweep_as_on_cuda(const PackedCloud& cloud, const Query& query, int threads) {
+  return run_sweep(cloud, query, threads,
                    []<typename Element>(const SweepFilterOf<Element>& filter, const PackedCloud& of,
                                         const SlotLayout& layout) {
                      const std::uint32_t entries = layout.slots % 3 == 0   ? 0
@@ -109,7 +108,7 @@ void check_answers(const MemoryCloud& cloud, const Expected& expected, const Que
     const int threads = next_threads();
     CAPTURE(engine.name, threads, query.first_pose, query.between_poses, query.clearance,
             query.profile, query.radius, cloud.cell_points(), cloud.cells().size());
-    check_equal(expected.wrong(engine.run(cloud, query, threads, 0), cloud, query), 0);
+    check_equal(expected.wrong(engine.run(cloud, query, threads), cloud, query), 0);
   }
 }
 
@@ -209,42 +208,6 @@ Expected check_engines(const EngineScene& scene, const Asked& asked) {
     }
   }
   return expected;
-}
-
-ToleratedResults check_tolerance(const EngineScene& scene, double tolerance) {
-  const Expected expected(scene);
-  const long double radius = scene.query.radius;
-  ToleratedResults out{.colliding = expected.colliding()};
-  for (const Engine& engine : engines()) {
-    if (!engine.finds_all) continue;
-    std::vector<bool> first;
-    int threads = 1;
-    for (const MemoryCloudOptions& packing :
-         {MemoryCloudOptions{64, 0}, MemoryCloudOptions{1000, 0}, MemoryCloudOptions{128, 300}}) {
-      const MemoryCloud cloud(scene.points, scene.quantisation, packing);
-      const HitSet hits = engine.run(cloud, scene.query, threads++, tolerance).hits;
-      std::vector<bool> answer(scene.points.size());
-      for (std::uint64_t entry = 0; entry < cloud.entry_count(); ++entry) {
-        if (cloud.is_used(entry)) answer[cloud.source(entry)] = hits.contains(entry);
-      }
-      std::uint64_t differing = 0, too_far = 0;
-      for (std::size_t i = 0; i < answer.size(); ++i) {
-        if (answer[i] == (expected.first_poses(false)[i] != kNoPose)) continue;
-        ++differing;
-        // Computed with more digits than the engines use.
-        const long double d = std::sqrt(static_cast<long double>(expected.clearances()[i].squared));
-        too_far += std::abs(d - radius) > tolerance;
-      }
-      CAPTURE(engine.name, packing.cell_points, scene.query.radius, tolerance);
-      check_equal(too_far, 0);
-      if (first.empty()) {
-        first = answer;
-        out.differing += differing;
-      }
-      CHECK((answer == first));
-    }
-  }
-  return out;
 }
 
 }  // namespace clearway

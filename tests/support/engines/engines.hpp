@@ -16,10 +16,8 @@ namespace clearway {
 /// An engine under test. Every engine runs through the same scenes, against brute force.
 struct Engine {
   std::string name;
-  /// tolerance: metres; 0: the search is exact.
-  SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads, double tolerance);
-  /// Whether it finds more than which points collide with a model of points at its poses, and can
-  /// search within a tolerance
+  SearchResult (*run)(const PackedCloud& cloud, const Query& query, int threads);
+  /// Whether it finds more than which points collide with a model of points at its poses
   bool finds_all;
 };
 
@@ -79,15 +77,5 @@ struct Asked {
 /// where an engine finds all, with first poses, between poses for a model of points, and clearances
 /// and profiles from below the radius to above it.
 Expected check_engines(const EngineScene& scene, const Asked& asked = {});
-
-struct ToleratedResults {
-  std::uint64_t colliding = 0;  ///< number of points that collide in truth
-  std::uint64_t differing = 0;  ///< number of answers, of all engines, that differ from the truth
-};
-
-/// Runs every engine that can search within a tolerance on the scene, packed in several ways.
-/// Checks that an answer is wrong only where the least distance, by brute force, is within the
-/// tolerance of the radius, and that an engine answers alike however the points are packed.
-ToleratedResults check_tolerance(const EngineScene& scene, double tolerance);
 
 }  // namespace clearway

@@ -8,7 +8,6 @@
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "core/sweep/tolerance.hpp"
 #include "stream/plan.hpp"
 #include "support/engines/answer_sets.hpp"
 
@@ -64,19 +63,15 @@ struct PreparedModel {
 };
 
 template <typename Element, typename Make>
-SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int threads,
-                          double tolerance, const Make& make, bool whole_field) {
-  std::optional<ThinnedQuery> thinned;
-  if (tolerance > 0) thinned.emplace(asked, tolerance);
-  const Query& query = thinned ? thinned->query() : asked;
+SearchResult run_sweep_of(const PackedCloud& cloud, const Query& query, int threads,
+                          const Make& make, bool whole_field) {
   if (query.model.empty()) return empty_result(cloud, query);
-  const auto& prepared = PreparedModel<StoredElement<Element>>::of(
-      query, search_radius(query.radius, tolerance), whole_field, threads);
+  const auto& prepared =
+      PreparedModel<StoredElement<Element>>::of(query, query.radius, whole_field, threads);
   const MotionTree motion(query.poses, prepared.tree.box(), query.between_poses);
-  const SweepFilterOf<Element> filter(query, motion, prepared.tree, prepared.field, cloud, 1,
-                                      tolerance);
+  const SweepFilterOf<Element> filter(query, motion, prepared.tree, prepared.field, cloud);
   const std::vector<PlannedCell> cells = plan(cloud, filter);
-  const bool masked = asked.ignores_points();
+  const bool masked = query.ignores_points();
   const SlotLayout layout{.slots = 1 + static_cast<std::uint32_t>(cells.size() % 5),
                           .page_bytes = 2 * smallest_page_bytes(cloud, cells, masked),
                           .cells = 1 + static_cast<std::uint32_t>(cells.size() % 3)};
@@ -91,16 +86,15 @@ SearchResult run_sweep_of(const PackedCloud& cloud, const Query& asked, int thre
 /// Plans the query, and runs it in an engine whose numbers of slots and of cells a page follow from
 /// the cloud's size, so that all of them occur. make: makes an engine from a filter of points, of
 /// triangles or of solids, which outlives it. whole_field: for an engine that cannot make parts of
-/// the field. tolerance: metres; 0: the search is exact.
+/// the field.
 template <typename Make>
-SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads, double tolerance,
-                       const Make& make, bool whole_field = false) {
+SearchResult run_sweep(const PackedCloud& cloud, const Query& query, int threads, const Make& make,
+                       bool whole_field = false) {
   if (query.model.is_solid()) {
-    return run_sweep_of<SolidTriangle>(cloud, query, threads, tolerance, make, whole_field);
+    return run_sweep_of<SolidTriangle>(cloud, query, threads, make, whole_field);
   }
-  return query.model.is_surface()
-             ? run_sweep_of<Triangle>(cloud, query, threads, tolerance, make, whole_field)
-             : run_sweep_of<Vec3>(cloud, query, threads, tolerance, make, whole_field);
+  return query.model.is_surface() ? run_sweep_of<Triangle>(cloud, query, threads, make, whole_field)
+                                  : run_sweep_of<Vec3>(cloud, query, threads, make, whole_field);
 }
 
 }  // namespace clearway

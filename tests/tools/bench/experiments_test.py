@@ -97,11 +97,9 @@ class Experiments(unittest.TestCase):
         cases = self.cases("accuracy")
         for case in cases["exact"] + cases["exact, far origin"]:
             self.assertEqual(case["findings"]["largest_distance"], 0)
-        for case in cases["tolerance"]:
-            self.assertLessEqual(case["findings"]["largest_distance"], float(case["parameters"]["value"]))
         for method in ("model thinned", "every nth pose", "environment quantised"):
             self.assertGreater(cases[method][-1]["findings"]["misses"], 0)
-        self.assertEqual(len(cases), 7)
+        self.assertEqual(len(cases), 6)
 
     def test_stability(self):
         cases = self.run_it("stability", "--force")["cases"]

@@ -17,22 +17,6 @@ using nlohmann::json;
 
 namespace {
 
-/// The least distance of every point of the hall, by brute force.
-std::vector<double> distances_in(const Hall& hall) {
-  const StoreReader store(hall.path("site.h5"));
-  std::vector<Vec3> environment;
-  for (const Quantum& q : points_by_source(store)) {
-    environment.push_back(position(store.quantisation(), q[0], q[1], q[2]));
-  }
-  const std::vector<Vec3> model = read_model_points(hall.path("model.ply"));
-  const std::vector<Pose> poses = read_trajectory(hall.path("trajectory.txt"), {});
-  std::vector<double> out;
-  for (const Clearance& c : brute_force_clearances(environment, {model, poses, {0.1}})) {
-    out.push_back(std::sqrt(c.squared));
-  }
-  return out;
-}
-
 struct Searches : Work {
   Outcome search(const std::string& options, const std::string& store = "") const {
     return run_program_at(CLEARWAY_BENCH_PROGRAM, folder,
@@ -52,31 +36,6 @@ struct Searches : Work {
 
 }  // namespace
 
-TEST_CASE("within a tolerance only points near the radius differ, whatever threads and cells") {
-  const Searches work;
-  const std::vector<double> distances = distances_in(work.hall);
-  require_success(work.run("convert " + work.hall / "environment.las" + " --cell-points 500 -o " +
-                           work.path("other.h5")));
-  for (const double tolerance : {1e-6, 0.01, 0.06}) {
-    const std::string options = "--tolerance " + std::to_string(tolerance);
-    const json report = json_of(require_success(work.search(options)));
-    check_json(report, R"({"model_points": 300, "poses": 150})");
-    CHECK(report["model_points_searched"] <= 300);
-    CHECK(report["poses_searched"] <= 150);
-    const std::vector<std::uint64_t> sources = work.found(options + " --threads 1");
-    std::vector<bool> found(distances.size());
-    for (const std::uint64_t source : sources) found[source] = true;
-    double farthest = 0;
-    for (std::size_t i = 0; i < distances.size(); ++i) {
-      if (found[i] == (distances[i] < 0.1)) continue;
-      farthest = std::max(farthest, std::abs(distances[i] - 0.1));
-    }
-    CHECK(farthest <= tolerance);
-    CHECK((work.found(options + " --threads 3 --memory 1G") == sources));
-    CHECK((work.found(options, work.path("other.h5")) == sources));
-  }
-}
-
 TEST_CASE("neither the field's voxel nor the grid's cell changes what is found") {
   const Searches work;
   require_success(work.run_hall(work.hall / "site.h5", "out.h5"));
@@ -93,9 +52,9 @@ TEST_CASE("neither the field's voxel nor the grid's cell changes what is found")
 TEST_CASE("settings that the engine does not have are refused") {
   const Searches work;
   for (const char* options :
-       {"--tolerance 0.1", "--tolerance 0", "--tolerance nan", "--engine grid --tolerance 0.01",
-        "--engine grid --field-voxel 0.1", "--grid-cell 0.1", "--precision float",
-        "--engine grid --precision double", "--engine kdtree"}) {
+       {"--field-voxel 0", "--field-voxel nan", "--engine grid --field-voxel 0.1",
+        "--grid-cell 0.1", "--precision float", "--engine grid --precision double",
+        "--engine kdtree"}) {
     CAPTURE(options);
     check_outcome(work.search(options), 2);
   }

@@ -43,8 +43,8 @@ struct StageOptions : Asked {
 /// and, where there is a GPU, sending and searching pages that lie in memory.
 Json time_stages(const StageOptions& options);
 
-/// A search with engines that are set as no search of Clearway sets them. Within a tolerance or in
-/// single precision its result is not exact, which the file does not say.
+/// A search with engines that are set as no search of Clearway sets them. In single
+/// precision its result is not exact, which the file does not say.
 struct SetEngines : Asked {
   std::filesystem::path output;
   SearchOptions search;  ///< engine kSweep or kGrid, device kCpu or kCuda; threads are as asked

@@ -4,7 +4,6 @@
 
 #include "bench/stages/measures.hpp"
 #include "clearway/error.hpp"
-#include "core/sweep/tolerance.hpp"
 #include "core/util/stopwatch.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
@@ -24,15 +23,13 @@ namespace {
 
 void check(const SetEngines& asked) {
   const EngineSettings& settings = asked.settings;
-  const bool sweep = settings.tolerance > 0 || settings.field_voxel > 0;
   const bool grid = settings.grid.grid_cell > 0 || settings.grid.precision == GridPrecision::kFloat;
-  if (sweep && asked.search.engine != Engine::kSweep) {
-    throw UsageError("a tolerance and a field voxel are of engine sweep");
+  if (settings.field_voxel > 0 && asked.search.engine != Engine::kSweep) {
+    throw UsageError("a field voxel is of engine sweep");
   }
   if (grid && asked.search.engine != Engine::kGrid) {
     throw UsageError("a grid cell and float precision are of engine grid");
   }
-  if (settings.tolerance >= asked.radius) throw UsageError("expected a tolerance below the radius");
 }
 
 std::unique_ptr<PageEngineKind> kind_of(const StoreReader& store, const Query& query,
@@ -53,10 +50,9 @@ std::unique_ptr<PageEngineKind> kind_of(const StoreReader& store, const Query& q
   return cpu_sweep_kind(store, query, options, asked.settings);
 }
 
-Json seconds_of(const SearchSeconds& seconds, double thin, double inputs, double total) {
+Json seconds_of(const SearchSeconds& seconds, double inputs, double total) {
   return {{"total", total},
           {"inputs", inputs},
-          {"thin", thin},
           {"plan", seconds.plan},
           {"field", seconds.field},
           {"engine", seconds.engine},
@@ -67,25 +63,6 @@ Json seconds_of(const SearchSeconds& seconds, double thin, double inputs, double
           {"collect", seconds.collect},
           {"write", seconds.write}};
 }
-
-/// What is left of a query within the tolerance; the query itself without one.
-class Thinned {
- public:
-  Thinned(const Query& query, double tolerance) : query_(query) {
-    if (!(tolerance > 0)) return;
-    const Stopwatch clock;
-    thinned_.emplace(query, tolerance);
-    seconds_ = clock.seconds();
-  }
-
-  const Query& query() const { return thinned_ ? thinned_->query() : query_; }
-  double seconds() const { return seconds_; }
-
- private:
-  const Query& query_;
-  std::optional<ThinnedQuery> thinned_;
-  double seconds_ = 0;
-};
 
 }  // namespace
 
@@ -101,18 +78,17 @@ Json search_with_set_engines(const SetEngines& asked) {
   PendingFile output(asked.output, true);
   const Query query = read_query(asked);
   const double inputs = total.seconds();
-  const Thinned thinned(query, asked.settings.tolerance);
 
   SearchReport report;
   const MessageCallback silent;
   const MessageLog log(silent, report.warnings);
   NoProgress progress;
-  const auto kind = kind_of(store, thinned.query(), asked, options, log);
+  const auto kind = kind_of(store, query, asked, options, log);
   RowsInMemory kept;
-  AnswerRows rows(store, thinned.query(), kept);
+  AnswerRows rows(store, query, kept);
   FoundAnswer found{.rows = &rows};
   SearchEnd end = search_pages(store,
-                               {.query = thinned.query(),
+                               {.query = query,
                                 .memory_bytes = options.memory_bytes,
                                 .kind = *kind,
                                 .collect = keep_answer(store, rows, found.profile, nullptr)},
@@ -131,9 +107,7 @@ Json search_with_set_engines(const SetEngines& asked) {
   Json out{{"radius", query.radius},
            {"environment_points", store.point_count()},
            {"model_points", query.model.vertices.size()},
-           {"model_points_searched", thinned.query().model.vertices.size()},
            {"poses", query.poses.size()},
-           {"poses_searched", thinned.query().poses.size()},
            {"colliding_points", written.colliding_points},
            {"engine", name_of(options.engine)},
            {"device", name_of(options.device)}};
@@ -147,7 +121,7 @@ Json search_with_set_engines(const SetEngines& asked) {
               {"slots", report.slots},
               {"needed_host_bytes", report.needed_host_bytes},
               {"peak_device_bytes", report.peak_device_bytes}});
-  out["seconds"] = seconds_of(report.seconds, thinned.seconds(), inputs, total.seconds());
+  out["seconds"] = seconds_of(report.seconds, inputs, total.seconds());
   return out;
 }
 
