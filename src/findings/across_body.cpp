@@ -1,6 +1,5 @@
 #include "findings/across_body.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -195,10 +195,7 @@ class BodyMotion {
       : poses_(body.poses), radius_(radius), ways_(ways) {
     for (std::size_t size = kLeastPoses; size <= kMostPoses; size *= 2) {
       auto& ranges = levels_.emplace_back((poses_.size() + size - 1) / size);
-      const ParallelScope scope;
-      const auto bound = piece_of(scope, [&](std::size_t i) { ranges[i] = range_of(i, size); });
-      scope.begin();
-      tbb::parallel_for(std::size_t{0}, ranges.size(), bound);
+      for_each_parallel(ranges.size(), [&](std::size_t i) { ranges[i] = range_of(i, size); });
     }
   }
 
@@ -477,8 +474,7 @@ void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
     viewers[part.body].add(bunches, part, found);
     exchange(number, found);
   };
-  const ParallelScope scope;
-  const auto add_cells = piece_of(scope, [&](const Range& range) {
+  for_each_parallel(Range(0, grid.cells(), 16), [&](const Range& range) {
     std::vector<Vec3> places;
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       if (progress.stop_requested()) return;
@@ -494,8 +490,6 @@ void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
       }
     }
   });
-  scope.begin();
-  tbb::parallel_for(Range(0, grid.cells(), 16), add_cells);
   throw_if_stopped(progress);
 }
 

@@ -1,6 +1,5 @@
 #include "findings/colliding_spacing.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -267,13 +267,10 @@ constexpr std::size_t kFewTimes = 2;
 template <typename Visit>
 void for_each_of(std::size_t count, Progress& progress, const Visit& visit) {
   using Range = tbb::blocked_range<std::size_t>;
-  const ParallelScope scope;
-  const auto piece = piece_of(scope, [&](const Range& range) {
+  for_each_parallel(Range(0, count, 1024), [&](const Range& range) {
     if (progress.stop_requested()) return;
     for (std::size_t i = range.begin(); i < range.end(); ++i) visit(i);
   });
-  scope.begin();
-  tbb::parallel_for(Range(0, count, 1024), piece);
   throw_if_stopped(progress);
 }
 

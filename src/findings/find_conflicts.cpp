@@ -1,5 +1,4 @@
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 #include <tbb/spin_mutex.h>
 
@@ -38,6 +37,7 @@
 #include "findings/shift/least_shift.hpp"
 #include "findings/tally_points.hpp"
 #include "findings/touched_first.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/result.hpp"
@@ -759,8 +759,7 @@ class ConflictSearch {
     // particular order.
     const auto for_runs = [&](auto visit) {
       using Range = tbb::blocked_range<std::uint32_t>;
-      const ParallelScope scope;
-      const auto visit_cells = piece_of(scope, [&](const Range& cells) {
+      for_each_parallel(Range(0, grid_->cells(), 64), [&](const Range& cells) {
         for (std::uint32_t cell = cells.begin(); cell != cells.end(); ++cell) {
           if (PointGroups::is_small(groups_.of_cell[cell])) continue;
           const std::span<const GroupedPoint> all = std::as_const(*grid_).points(cell);
@@ -771,8 +770,6 @@ class ConflictSearch {
           }
         }
       });
-      scope.begin();
-      tbb::parallel_for(Range(0, grid_->cells(), 64), visit_cells);
     };
     std::vector<std::atomic<std::size_t>> next(out_.listed.size());
     for_runs([&](std::uint32_t i, std::span<const GroupedPoint> run) { next[i] += run.size(); });

@@ -1,11 +1,11 @@
 #include "findings/tally_points.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/spin_mutex.h>
 
 #include <memory>
 
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -68,8 +68,7 @@ std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, boo
                             std::uint64_t count, const TouchPoses& poses, Progress& progress,
                             NumberOf number_of) {
   SharedTallies tallies(count);
-  const ParallelScope scope;
-  const auto add_cells = piece_of(scope, [&](const Range& range) {
+  for_each_parallel(Range(0, grid.cells(), 64), [&](const Range& range) {
     if (progress.stop_requested()) return;
     RunOfPoints run(tallies);
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
@@ -78,8 +77,6 @@ std::vector<Tally> tally_by(const CellGrid& grid, const PointGroups& groups, boo
       for (const GroupedPoint& p : grid.points(cell)) run.add(number_of(group, p.row), p, poses);
     }
   });
-  scope.begin();
-  tbb::parallel_for(Range(0, grid.cells(), 64), add_cells);
   throw_if_stopped(progress);
   return tallies.take();
 }

@@ -1,6 +1,5 @@
 #include "findings/touched_first.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "core/geometry/axes.hpp"
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -103,16 +103,13 @@ void find_touched_first(const CellGrid& grid, const PointGroups& groups,
     part.seen.extend(there);
     release(&lock);
   };
-  const ParallelScope scope;
-  const auto add_cells = piece_of(scope, [&](const Range& range) {
+  for_each_parallel(Range(0, grid.cells(), 64), [&](const Range& range) {
     if (progress.stop_requested()) return;
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
       if (PointGroups::is_small(groups.of_cell[cell])) continue;
       for (const GroupedPoint& p : grid.points(cell)) add(p);
     }
   });
-  scope.begin();
-  tbb::parallel_for(Range(0, grid.cells(), 64), add_cells);
   throw_if_stopped(progress);
 }
 

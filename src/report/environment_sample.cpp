@@ -1,13 +1,12 @@
 #include "report/environment_sample.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway {
@@ -52,8 +51,7 @@ class Sampler {
     progress.begin("environment near the path", store_.cells().size(), "cells");
     places_.resize(store_.cells().size());
     tbb::enumerable_thread_specific<Counts> of_threads;
-    const ParallelScope scope;
-    const auto count_cell = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(store_.cells().size(), [&](std::size_t i) {
       throw_if_stopped(progress);
       const auto cell = static_cast<std::uint32_t>(i);
       find_places(cell);
@@ -64,8 +62,6 @@ class Sampler {
       });
       progress.advance(1);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, store_.cells().size(), count_cell);
     for (const Counts& counts : of_threads) {
       counts_.points += counts.points;
       for (std::size_t bin = 0; bin < kBins; ++bin) counts_.bins[bin] += counts.bins[bin];
@@ -89,14 +85,11 @@ class Sampler {
   std::vector<PagePoint> pick(double area, Progress& progress) const {
     std::vector<std::vector<PagePoint>> of_cell(store_.cells().size());
     progress.begin("environment points of the page", of_cell.size(), "cells");
-    const ParallelScope scope;
-    const auto pick_points = piece_of(scope, [&](std::size_t cell) {
+    for_each_parallel(of_cell.size(), [&](std::size_t cell) {
       throw_if_stopped(progress);
       pick_cell(static_cast<std::uint32_t>(cell), area, of_cell[cell]);
       progress.advance(1);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, of_cell.size(), pick_points);
     progress.end();
     return joined(of_cell);
   }
@@ -112,12 +105,9 @@ class Sampler {
     std::vector<std::size_t> first{0};
     for (const auto& part : parts) first.push_back(first.back() + part.size());
     std::vector<PagePoint> out(first.back());
-    const ParallelScope scope;
-    const auto copy = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(parts.size(), [&](std::size_t i) {
       std::ranges::copy(parts[i], out.begin() + static_cast<std::ptrdiff_t>(first[i]));
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, parts.size(), copy);
     return out;
   }
 

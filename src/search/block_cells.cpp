@@ -1,7 +1,5 @@
 #include "search/block_cells.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -9,8 +7,8 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "cpu/section_search.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "search/device_estimate.hpp"
 #include "search/kinds/cuda_kind.hpp"
@@ -33,8 +31,7 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
   const SectionSearch search(cloud, section);
   progress.begin("section", cloud.point_count(), "points");
   in_threads(threads, [&] {
-    const ParallelScope all_cells;
-    const auto search_cell = piece_of(all_cells, [&](std::size_t i) {
+    for_each_parallel(cloud.cells().size(), [&](std::size_t i) {
       throw_if_stopped(progress);
       const auto cell = static_cast<std::uint32_t>(i);
       const std::uint32_t count = cloud.cells()[cell].count;
@@ -47,22 +44,16 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
           ignored.mask(cell, searched, [&] { return coordinates; });
         }
         const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
-        const ParallelScope of_cell;
-        const auto search_blocks = piece_of(of_cell, [&](std::uint32_t part) {
-          throw_if_stopped(progress);
-          const std::uint32_t first = part * kBlocksAtOnce;
-          search.search(cell, coordinates, searched, bins, first,
-                        std::min(first + kBlocksAtOnce, blocks));
-        });
-        of_cell.begin();
-        tbb::parallel_for(std::uint32_t{0},
-                          static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
-                          search_blocks);
+        for_each_parallel(static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
+                          [&](std::uint32_t part) {
+                            throw_if_stopped(progress);
+                            const std::uint32_t first = part * kBlocksAtOnce;
+                            search.search(cell, coordinates, searched, bins, first,
+                                          std::min(first + kBlocksAtOnce, blocks));
+                          });
       }
       progress.advance(count);
     });
-    all_cells.begin();
-    tbb::parallel_for(std::size_t{0}, cloud.cells().size(), search_cell);
   });
   progress.end();
 }
@@ -71,14 +62,11 @@ std::vector<PlannedCell> plan_section(const PackedCloud& cloud, const IgnoredPoi
                                       const SectionRef& section, int threads, Progress& progress) {
   std::vector<PlannedCell> cells(cloud.cells().size());
   in_threads(threads, [&] {
-    const ParallelScope all_cells;
-    const auto plan_cell = piece_of(all_cells, [&](std::size_t i) {
+    for_each_parallel(cells.size(), [&](std::size_t i) {
       throw_if_stopped(progress);
       const auto cell = static_cast<std::uint32_t>(i);
       cells[i] = {cell, bins_of_cell(cloud, ignored, section, cell)};
     });
-    all_cells.begin();
-    tbb::parallel_for(std::size_t{0}, cells.size(), plan_cell);
   });
   std::erase_if(cells, [](const PlannedCell& cell) { return cell.nodes.empty(); });
   return cells;

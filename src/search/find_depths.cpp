@@ -1,7 +1,6 @@
 #include "search/find_depths.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -11,9 +10,8 @@
 #include "clearway/error.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/lane_bits.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "cpu/nearest_free.hpp"
-#include "io/files/nested_loop.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 
 namespace clearway {
@@ -57,8 +55,7 @@ std::vector<std::uint32_t> cells_not_free(const StoreReader& store, const Answer
 /// Finds the free points of the cells in which not all are free.
 void add_free_points(std::span<const std::uint32_t> cells, const IgnoredPoints& ignored,
                      const AnswerRows& rows, Progress& progress, FreePoints& free) {
-  const ParallelScope scope;
-  const auto add = piece_of(scope, [&](std::size_t i) {
+  for_each_parallel(cells.size(), [&](std::size_t i) {
     throw_if_stopped(progress);
     const CellRows hits = rows.read(cells[i], PointQuestion::kHits);
     std::vector<std::uint64_t> taken = rows.read(cells[i], PointQuestion::kBelow).words;
@@ -66,9 +63,6 @@ void add_free_points(std::span<const std::uint32_t> cells, const IgnoredPoints& 
     for (std::size_t word = 0; word < hits.words.size(); ++word) taken[word] |= hits.words[word];
     free.add_cell(cells[i], taken, ignored);
   });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, cells.size(), add);
-  scope.end();
   free.finish();
 }
 
@@ -126,11 +120,8 @@ std::uint64_t find_depths(const StoreReader& store, const Query& query, AnswerRo
     in_threads(threads, [&] {
       add_free_points(not_free, ignored, rows, progress, free);
       Searches searches([&] { return NearestFree(tree, free); });
-      const ParallelScope scope;
-      const auto search =
-          piece_of(scope, [&](std::size_t i) { search_cell(cells[i], searches, rows, progress); });
-      scope.begin();
-      tbb::parallel_for(std::size_t{0}, cells.size(), search);
+      for_each_parallel(cells.size(),
+                        [&](std::size_t i) { search_cell(cells[i], searches, rows, progress); });
     });
   }
   progress.end();

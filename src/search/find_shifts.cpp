@@ -1,4 +1,3 @@
-#include <tbb/parallel_for.h>
 #include <tbb/task.h>
 #include <tbb/task_arena.h>
 
@@ -30,8 +29,8 @@
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/stopwatch.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/check_conflicts.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
@@ -485,17 +484,13 @@ class ShiftSearch {
   template <typename Visit>
   void in_parallel(std::size_t count, const Visit& visit) const {
     std::atomic<std::size_t> next = 0;
-    const ParallelScope scope;
-    const auto piece = piece_of(scope, [&](std::size_t) {
+    const auto visit_next = [&](std::size_t) {
       for (std::size_t i = next++; i < count && !tbb::is_current_task_group_canceling();
            i = next++) {
         tbb::this_task_arena::isolate([&] { visit(i); });
       }
-    });
-    in_threads(threads_, [&] {
-      scope.begin();
-      tbb::parallel_for(std::size_t{0}, std::min(count, kMostAtOnce), piece);
-    });
+    };
+    in_threads(threads_, [&] { for_each_parallel(std::min(count, kMostAtOnce), visit_next); });
   }
 
   /// Finds the first candidate from `rank` on that frees the stretch of the row. points: further

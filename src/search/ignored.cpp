@@ -1,7 +1,5 @@
 #include "search/ignored.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -17,12 +15,12 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/search_result.hpp"
 #include "core/util/format.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/check_conflicts.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/checks/question.hpp"
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 
 namespace clearway {
 namespace {
@@ -35,15 +33,12 @@ constexpr double kFewLeft = 0.01;
 /// several threads at once. searched: room for the words of the cell's mask.
 template <typename Visit>
 void for_each_touched(const StoreReader& store, const IgnoredPoints& ignored, const Visit& visit) {
-  const ParallelScope scope;
-  const auto look = piece_of(scope, [&](std::size_t cell) {
+  for_each_parallel(store.cells().size(), [&](std::size_t cell) {
     const auto index = static_cast<std::uint32_t>(cell);
     if (!ignored.touches(index)) return;
     std::vector<std::uint64_t> searched(store.blocks_per_cell());
     visit(index, searched);
   });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, store.cells().size(), look);
 }
 
 QueryParameters only_classes(const QueryParameters& query) {
@@ -214,10 +209,9 @@ Query query_of_ignored(const Query& query) {
   return out;
 }
 
-CollectedPages find_colliding_ignored(const StoreReader& store, const Query& query,
-                                      std::uint64_t memory_bytes, PageEngineKind& kind,
-                                      const ShardCells* only, AnswerRows& rows,
-                                      Progress& progress) {
+SearchReport find_colliding_ignored(const StoreReader& store, const Query& query,
+                                    std::uint64_t memory_bytes, PageEngineKind& kind,
+                                    const ShardCells* only, AnswerRows& rows, Progress& progress) {
   const Heights heights(store, query);
   const CollectPage add = [&](std::span<const PlannedCell> cells, const PageResult& found) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -228,7 +222,7 @@ CollectedPages find_colliding_ignored(const StoreReader& store, const Query& que
       rows.add(cell, {{PointQuestion::kIgnored, colliding}, {PointQuestion::kIgnoredHigh, high}});
     }
   };
-  return collect_pages(
+  return run_visit(
       store,
       {.query = query,
        .memory_bytes = memory_bytes,

@@ -11,8 +11,8 @@
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
-#include "search/page_search.hpp"
 #include "search/shard_cells.hpp"
+#include "search/visit.hpp"
 #include "stream/answer_rows.hpp"
 
 namespace clearway {
@@ -38,10 +38,10 @@ Query query_of_ignored(const Query& query);
 /// Searches the ignored points of all cells that `rows` does not know, or of those of `only`, and
 /// adds to `rows` which of them would collide, and which of these are first touched well above the
 /// model's lowest point. query: one made by query_of_ignored(). kind: the engine for that query.
-/// Throws as search_pages() does.
-CollectedPages find_colliding_ignored(const StoreReader& store, const Query& query,
-                                      std::uint64_t memory_bytes, PageEngineKind& kind,
-                                      const ShardCells* only, AnswerRows& rows, Progress& progress);
+/// Throws as run_visit() does.
+SearchReport find_colliding_ignored(const StoreReader& store, const Query& query,
+                                    std::uint64_t memory_bytes, PageEngineKind& kind,
+                                    const ShardCells* only, AnswerRows& rows, Progress& progress);
 
 /// Warns where ignoring points may have made the answer: "ignored-collide" where more ignored
 /// points would collide than searched ones do, and "ignored-high" where some would collide well

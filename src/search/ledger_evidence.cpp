@@ -24,8 +24,8 @@
 #include "search/check_query.hpp"
 #include "search/kinds/body_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
-#include "search/page_search.hpp"
 #include "search/seen_space.hpp"
+#include "search/visit.hpp"
 
 namespace clearway {
 namespace {
@@ -60,13 +60,13 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
       });
     }
   };
-  collect_pages(cloud,
-                {.query = query,
-                 .memory_bytes = memory_bytes,
-                 .kind = *kind,
-                 .collect = collect,
-                 .stage = "places of the ledger"},
-                progress);
+  run_visit(cloud,
+            {.query = query,
+             .memory_bytes = memory_bytes,
+             .kind = *kind,
+             .collect = collect,
+             .stage = "places of the ledger"},
+            progress);
   return poses;
 }
 

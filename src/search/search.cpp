@@ -27,13 +27,13 @@
 #include "search/find_depths.hpp"
 #include "search/ignored.hpp"
 #include "search/memory_budget.hpp"
-#include "search/page_search.hpp"
 #include "search/result_header.hpp"
 #include "search/run_journal.hpp"
 #include "search/search_engines.hpp"
 #include "search/seen_space.hpp"
 #include "search/session_state.hpp"
 #include "search/shard_cells.hpp"
+#include "search/visit.hpp"
 #include "stream/answer_rows.hpp"
 #include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
@@ -43,7 +43,7 @@ namespace {
 
 /// What a search has found, and what its last pass has left.
 struct AllFound : FoundAnswer {
-  SearchEnd end;
+  VisitEnd end;
 };
 
 /// What was read after `before`.
@@ -324,14 +324,14 @@ class Search {
 
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
-  SearchEnd find_on(Device device, ProfileSet& profile) {
+  VisitEnd find_on(Device device, ProfileSet& profile) {
     report_.device = device;
     report_.device_name = DeviceChoice().name;
     // A journal that does not match is refused before anything is planned.
     if (device == Device::kCpu || !fallback_allowed(options_)) open_rows(profile);
     const std::unique_ptr<PageEngineKind> kind = engines_.kind(device, store_, query_, options_);
     CollectPage keep;
-    return search_pages(
+    return run_visit(
         store_,
         {.query = query_,
          .memory_bytes = options_.memory_bytes,
@@ -340,8 +340,9 @@ class Search {
          .collect = [&](std::span<const PlannedCell> cells,
                         const PageResult& page) { keep(cells, page); },
          .answered =
-             [&](std::uint32_t cell) { return rows_->answered(cell, PointQuestion::kHits); }},
-        {.planned =
+             [&](std::uint32_t cell) { return rows_->answered(cell, PointQuestion::kHits); },
+         .least_write_bytes = least_write_bytes(store_, query_),
+         .planned =
              [&](std::uint64_t host, std::uint64_t on_device) {
                take_memory(host + (file_ ? 0 : kMemoryStep));
                engines_.take_device_memory(on_device, progress_);
@@ -367,7 +368,7 @@ class Search {
     further_.query = query_of_ignored(query_);
     further_.options = options_;
     further_.options.engine = Engine::kSweep;
-    const CollectedPages taken = engines_.on(report_.device, [&](Device device) {
+    const SearchReport taken = engines_.on(report_.device, [&](Device device) {
       return find_colliding_ignored(
           store_, further_.query, options_.memory_bytes,
           *engines_.kind(device, store_, further_.query, further_.options), only(), *rows_,
@@ -596,9 +597,9 @@ class Search {
         keep(of[i].cell, {hit_rows(store_, page, i), clearance_rows(store_, page, i)});
       }
     };
-    SearchEnd end = engines_.on(report_.device, [&](Device device) {
+    VisitEnd end = engines_.on(report_.device, [&](Device device) {
       const auto kind = engines_.kind(device, store_, further_.query, further_.options);
-      return search_pages(
+      return run_visit(
           store_,
           {.query = further_.query,
            .memory_bytes = further_.options.memory_bytes,
@@ -606,8 +607,9 @@ class Search {
            .only = cells,
            .collect = collect,
            .answered = [&](std::uint32_t cell) { return rows_->answered(cell, question); },
-           .stage = name},
-          {}, progress_, report, log);
+           .stage = name,
+           .least_write_bytes = least_write_bytes(store_, further_.query)},
+          progress_, report, log);
     });
     found.end.engine_end = std::move(end.engine_end);
     found.end.write_bytes = std::min(found.end.write_bytes, end.write_bytes);

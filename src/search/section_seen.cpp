@@ -1,7 +1,5 @@
 #include "search/section_seen.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <cmath>
 #include <string>
 #include <utility>
@@ -9,8 +7,8 @@
 #include "clearway/query.hpp"
 #include "core/seen/brick_cloud.hpp"
 #include "core/seen/brick_map.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "cpu/section_cubes.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "search/seen_space.hpp"
 
@@ -73,15 +71,12 @@ BeamCounts SectionSeen::block(int threads, SectionMaps& maps, Progress& progress
   const SectionCubes search(cubes_, store_.quantisation(), poses_, lattice_, rounding_);
   progress.begin("not known", bricks_.size(), "blocks of cubes");
   in_threads(threads, [&] {
-    const ParallelScope scope;
-    const auto search_brick = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(map.bricks().size(), [&](std::size_t i) {
       throw_if_stopped(progress);
       const auto brick = static_cast<std::uint32_t>(i);
       search.search(map.bricks()[brick], map.words(brick), maps);
       progress.advance(1);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, map.bricks().size(), search_brick);
   });
   progress.end();
   return left_out;

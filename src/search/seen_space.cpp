@@ -1,7 +1,6 @@
 #include "search/seen_space.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/spin_mutex.h>
 
 #include <algorithm>
@@ -28,10 +27,11 @@
 #include "core/util/stopwatch.hpp"
 #include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "search/check_query.hpp"
 #include "search/checks/question.hpp"
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 
 namespace clearway {
 namespace {
@@ -86,7 +86,7 @@ struct SweptCubes {
 /// the search, which takes up to memory_bytes.
 void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_bytes,
            std::uint64_t most_bytes, PageEngineKind& kind, Progress& progress, SweptCubes& swept,
-           CollectedPages& taken) {
+           SearchReport& taken) {
   const BodyNumbers numbers(query);
   swept.bricks.resize(cloud.bricks().size());
   const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
@@ -100,13 +100,13 @@ void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_byt
     }
     if (swept.bytes() > most_bytes) refuse_more(kMemoryParts * swept.bytes(), most_bytes);
   };
-  taken = collect_pages(cloud,
-                        {.query = query,
-                         .memory_bytes = memory_bytes,
-                         .kind = kind,
-                         .collect = collect,
-                         .stage = "swept space"},
-                        progress);
+  taken = run_visit(cloud,
+                    {.query = query,
+                     .memory_bytes = memory_bytes,
+                     .kind = kind,
+                     .collect = collect,
+                     .stage = "swept space"},
+                    progress);
 }
 
 /// How much of the swept cubes lies in each cell of the cross-sections.
@@ -116,8 +116,9 @@ SweptCells cross_sections_of(const BrickCloud& cloud, const SweptCubes& swept,
   CrossSections all(side);
   tbb::spin_mutex mutex;
   in_threads(threads, [&] {
-    const ParallelScope scope;
-    const auto add = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& cells) {
+    constexpr std::size_t kBricksAtOnce = 256;
+    using Range = tbb::blocked_range<std::size_t>;
+    for_each_parallel(Range(0, swept.bricks.size(), kBricksAtOnce), [&](const Range& cells) {
       throw_if_stopped(progress);
       CrossSections some(side);
       for (std::size_t cell = cells.begin(); cell < cells.end(); ++cell) {
@@ -135,9 +136,6 @@ SweptCells cross_sections_of(const BrickCloud& cloud, const SweptCubes& swept,
       const tbb::spin_mutex::scoped_lock lock(mutex);
       all.add(some);
     });
-    scope.begin();
-    constexpr std::size_t kBricksAtOnce = 256;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, swept.bricks.size(), kBricksAtOnce), add);
   });
   return all.cells();
 }
@@ -161,14 +159,11 @@ class StoreBeams {
   std::vector<PlannedCell> cells(const ShardCells* only, Beams& beams, Progress& progress) const {
     std::vector<BeamReach> reach(store_.cells().size());
     {
-      const ParallelScope scope;
-      const auto look = piece_of(scope, [&](std::size_t cell) {
+      for_each_parallel(reach.size(), [&](std::size_t cell) {
         const auto index = static_cast<std::uint32_t>(cell);
         throw_if_stopped(progress);
         reach[cell] = only == nullptr || only->contains(index) ? reach_of(index) : BeamReach{false};
       });
-      scope.begin();
-      tbb::parallel_for(std::size_t{0}, reach.size(), look);
     }
     std::vector<PlannedCell> cells;
     for (std::uint32_t cell = 0; cell < reach.size(); ++cell) {
@@ -249,16 +244,13 @@ BeamCounts follow_on_cpu(const StoreReader& store, const Beams& beams,
   progress.begin(kBeamStage, points, "points");
   std::atomic<std::uint64_t> without_origin = 0, too_long = 0;
   in_threads(threads, [&] {
-    const ParallelScope scope;
-    const auto follow = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(cells.size(), [&](std::size_t i) {
       throw_if_stopped(progress);
       const BeamCounts counts = follow_cell(store, beams, cells[i].cell);
       without_origin += counts.without_origin;
       too_long += counts.too_long;
       progress.advance(store.cells()[cells[i].cell].count);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, cells.size(), follow);
   });
   progress.end();
   return {without_origin, too_long};

@@ -17,8 +17,8 @@
 #include "core/util/progress.hpp"
 #include "io/store/store_reader.hpp"
 #include "search/kinds/page_engine_kind.hpp"
-#include "search/page_search.hpp"
 #include "search/shard_cells.hpp"
+#include "search/visit.hpp"
 
 namespace clearway {
 
@@ -27,8 +27,8 @@ struct SeenSpace {
   UnseenCubes unseen;
   SweptCells swept;  ///< how much of the swept cubes lies in each cell of the cross-sections
   SeenSummary summary;
-  BeamCounts left_out;   ///< beams that were not followed
-  CollectedPages taken;  ///< what the search for swept cubes took
+  BeamCounts left_out;  ///< beams that were not followed
+  SearchReport taken;   ///< what the search for swept cubes took
   double sweep_seconds = 0, beam_seconds = 0;
 };
 

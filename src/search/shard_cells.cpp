@@ -1,7 +1,5 @@
 #include "search/shard_cells.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,8 +10,8 @@
 
 #include "core/sweep/field/model_field.hpp"
 #include "core/sweep/sweep_filter.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "cpu/cell_search.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/files/xxh64.hpp"
 #include "search/body_queries.hpp"
@@ -91,13 +89,12 @@ std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& q
   const std::vector<PlannedCell> cells = plan(cloud, filter.get());
   const std::size_t most_blocks =
       std::max(kLeastBlocksOfCell, kBlocks / std::max<std::size_t>(cells.size(), 1));
-  const ParallelScope scope;
-  const auto look = piece_of(scope, [&](std::size_t i) {
-    work[cells[i].cell] =
-        static_cast<std::uint64_t>(work_of(cloud, filter.get(), cells[i], most_blocks));
+  ThreadLimit(threads).run([&] {
+    for_each_parallel(cells.size(), [&](std::size_t i) {
+      work[cells[i].cell] =
+          static_cast<std::uint64_t>(work_of(cloud, filter.get(), cells[i], most_blocks));
+    });
   });
-  scope.begin();
-  ThreadLimit(threads).run([&] { tbb::parallel_for(std::size_t{0}, cells.size(), look); });
   return work;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -16,8 +15,8 @@
 
 #include "core/cloud/packed_cloud.hpp"
 #include "core/util/progress.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/store/store_reader.hpp"
 #include "stream/answer_rows.hpp"
 
@@ -204,8 +203,7 @@ class GatherRows {
   /// letters.
   void for_each_cell(std::size_t first, std::size_t end,
                      const std::function<void(std::uint32_t, const CellParts&)>& visit) {
-    const ParallelScope scope;
-    const auto cells = piece_of(scope, [&](const Range& range) {
+    for_each_parallel(Range(0, cells_.size()), [&](const Range& range) {
       CellParts& parts = threads_.local();
       for (std::size_t i = range.begin(); i != range.end(); ++i) {
         throw_if_stopped(progress_);
@@ -213,8 +211,6 @@ class GatherRows {
         if (!parts.parts().empty()) visit(cells_[i], parts);
       }
     });
-    scope.begin();
-    tbb::parallel_for(Range(0, cells_.size()), cells);
   }
 
   /// Puts the rows of each part into its places, in any order.
@@ -257,8 +253,7 @@ class GatherRows {
       const std::size_t at = taken.fetch_add(largest);
       return at + largest <= copies.size() ? copies.subspan(at, largest) : std::span<Row>();
     });
-    const ParallelScope scope;
-    const auto parts = piece_of(scope, [&](const Range& range) {
+    for_each_parallel(Range(first, end), [&](const Range& range) {
       const std::span<Row> copy = copy_of_thread.local();
       for (std::size_t part = range.begin(); part != range.end(); ++part) {
         throw_if_stopped(progress_);
@@ -266,8 +261,6 @@ class GatherRows {
         order_part(rows.subspan(places[part - first].end - count, count), copy);
       }
     });
-    scope.begin();
-    tbb::parallel_for(Range(first, end), parts);
   }
 
   const StoreReader& store_;

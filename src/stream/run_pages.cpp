@@ -1,6 +1,5 @@
 #include "stream/run_pages.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "stream/plan.hpp"
 
@@ -293,10 +293,7 @@ void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
   std::deque<Lane> lanes;
   for (PageEngine* engine : engines) lanes.emplace_back(pages, *engine);
   {
-    const ParallelScope scope;
-    const auto run = piece_of(scope, [&](std::size_t lane) { lanes[lane].run(); });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, lanes.size(), run);
+    for_each_parallel(lanes.size(), [&](std::size_t lane) { lanes[lane].run(); });
   }
   if (pages.next < pages.pages.size()) throw Interrupted("interrupted");
 }

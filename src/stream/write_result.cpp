@@ -1,7 +1,6 @@
 #include "stream/write_result.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -15,7 +14,7 @@
 
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
@@ -472,13 +471,11 @@ void fill_tables(const StoreReader& store, FoundAnswer answer, const ResultHeade
                                                      std::span<const Row> rows, std::uint64_t all,
                                                      std::uint64_t& kept, Rows& to) {
     if (kept == 0) put_columns(meaning, to, SizeColumn{all});
-    const ParallelScope scope;
-    const auto strips = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& part) {
-      const std::span<const Row> of = rows.subspan(part.begin(), part.size());
-      put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
-    });
-    scope.begin();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, rows.size(), kRowsOfThread), strips);
+    for_each_parallel(tbb::blocked_range<std::size_t>(0, rows.size(), kRowsOfThread),
+                      [&](const tbb::blocked_range<std::size_t>& part) {
+                        const std::span<const Row> of = rows.subspan(part.begin(), part.size());
+                        put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
+                      });
     kept += rows.size();
   };
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();

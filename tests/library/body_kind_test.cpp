@@ -3,7 +3,7 @@
 
 #include "search/body_queries.hpp"
 #include "search/kinds/sweep_kind.hpp"
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 #include "support/catch.hpp"
 #include "support/engines/answer_sets.hpp"
 #include "support/engines/host_sweep.hpp"
@@ -62,17 +62,14 @@ std::unique_ptr<PageEngineKind> host_kind(const StoreReader& store, const Query&
 
 SearchResult answer_of(const StoreReader& store, const Query& query, PageEngineKind& kind) {
   NoProgress progress;
-  SearchReport report;
-  const MessageCallback silent;
-  const MessageLog log(silent, report.warnings);
   SearchResult answer = empty_result(store, query);
-  search_pages(store,
-               {.query = query,
-                .memory_bytes = std::uint64_t{1} << 30,
-                .kind = kind,
-                .collect = [&](std::span<const PlannedCell> cells,
-                               const PageResult& page) { add_page(store, cells, page, answer); }},
-               {}, progress, report, log);
+  run_visit(store,
+            {.query = query,
+             .memory_bytes = std::uint64_t{1} << 30,
+             .kind = kind,
+             .collect = [&](std::span<const PlannedCell> cells,
+                            const PageResult& page) { add_page(store, cells, page, answer); }},
+            progress);
   return answer;
 }
 

@@ -130,15 +130,18 @@ std::vector<Chord> chords_of(std::span<const Pose> poses, double least) {
   return chords;
 }
 
+Box box_of_positions(std::span<const Pose> poses) {
+  Box box{poses[0].position(), poses[0].position()};
+  for (const Pose& pose : poses) box.extend(pose.position());
+  return box;
+}
+
 TrajectorySummary summarize_trajectory(std::span<const Pose> poses) {
   TrajectorySummary out;
   out.poses = poses.size();
   if (poses.empty()) return out;
-  out.box = {poses[0].position(), poses[0].position()};
-  for (const Pose& pose : poses) {
-    out.box.extend(pose.position());
-    out.skew = std::max(out.skew, skew_of(pose));
-  }
+  out.box = box_of_positions(poses);
+  for (const Pose& pose : poses) out.skew = std::max(out.skew, skew_of(pose));
   add_steps(poses, out);
   out.up = up_axis(poses);
   out.forward = forward_axis(poses, out.length);

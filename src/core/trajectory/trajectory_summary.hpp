@@ -39,6 +39,9 @@ struct TrajectorySummary {
   BodyAxis forward;  ///< axis that points most along the motion, weighted by length
 };
 
+/// The box around the positions of poses, of which there is at least one.
+Box box_of_positions(std::span<const Pose> poses);
+
 TrajectorySummary summarize_trajectory(std::span<const Pose> poses);
 
 /// The angle of the rotation from a to b, radians.

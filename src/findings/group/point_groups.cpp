@@ -1,7 +1,6 @@
 #include "findings/group/point_groups.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -11,8 +10,8 @@
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/group/cell_grid.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -220,14 +219,11 @@ class OpenPairs {
 
   void decide(const Progress& progress) {
     make_trees(progress);
-    const ParallelScope scope;
-    const auto decide_pair = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(pairs_.size(), [&](std::size_t i) {
       const auto [a, b] = pairs_[i];
       if (progress.stop_requested() || sets_.together(a, b)) return;
       if (PointTree::any_neighbours(neighbourhood_, tree(a), tree(b))) sets_.unite(a, b);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, pairs_.size(), decide_pair);
   }
 
  private:
@@ -239,12 +235,9 @@ class OpenPairs {
     std::sort(cells_.begin(), cells_.end());
     cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
     trees_.resize(cells_.size());
-    const ParallelScope scope;
-    const auto make = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(cells_.size(), [&](std::size_t i) {
       if (!progress.stop_requested()) trees_[i].emplace(grid_.points(cells_[i]), neighbourhood_);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, cells_.size(), make);
     throw_if_stopped(progress);
   }
   const PointTree& tree(std::uint32_t cell) const {
@@ -265,8 +258,7 @@ class OpenPairs {
 std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbourhood,
                              UnionFind& sets, const RowStep& step, Progress& progress) {
   tbb::enumerable_thread_specific<std::vector<Pair>> open;
-  const ParallelScope scope;
-  const auto look = piece_of(scope, [&](const CellRange& range) {
+  for_each_parallel(CellRange(0, grid.cells(), kCellGrain), [&](const CellRange& range) {
     if (progress.stop_requested()) return;
     RowWalk walk(grid, neighbourhood, step);
     for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
@@ -284,8 +276,6 @@ std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbou
     }
     progress.advance(range.size());
   });
-  scope.begin();
-  tbb::parallel_for(CellRange(0, grid.cells(), kCellGrain), look);
   throw_if_stopped(progress);
   std::vector<Pair> all;
   for (const std::vector<Pair>& some : open) all.insert(all.end(), some.begin(), some.end());

@@ -1,7 +1,6 @@
 #include "findings/shift/body_sections.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -13,7 +12,7 @@
 
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/triangle_box.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -79,13 +78,10 @@ struct Outline {
 
 template <typename Run>
 void for_bands(std::int32_t rows, Run run) {
-  const ParallelScope scope;
-  const auto band = piece_of(scope, [&](std::int32_t i) {
+  for_each_parallel(kBands, [&](std::int32_t i) {
     run(static_cast<std::int32_t>(std::int64_t{rows} * i / kBands),
         static_cast<std::int32_t>(std::int64_t{rows} * (i + 1) / kBands));
   });
-  scope.begin();
-  tbb::parallel_for(std::int32_t{0}, kBands, band);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #include "findings/shift/least_shift.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,8 +16,8 @@
 #include "core/geometry/predicate.hpp"
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle_box.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/shift/body_sections.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -737,8 +735,7 @@ class LeastShift::Round {
   void run_units(const std::vector<std::size_t>& open) {
     std::vector<std::atomic<bool>> blocked(shift_.size());
     std::vector<double> found(open.size());
-    const ParallelScope scope;
-    const auto run = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(open.size(), [&](std::size_t i) {
       Unit& unit = units_[open[i] / 2];
       const std::size_t side = 2 * unit.set + open[i] % 2;
       found[i] = shift_[side];
@@ -757,9 +754,6 @@ class LeastShift::Round {
       // Whatever the other units find, the longest shift is not enough.
       if (found[i] > most_) blocked[side].store(true, std::memory_order_relaxed);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, open.size(), run);
-    scope.end();
     for (std::size_t i = 0; i < open.size(); ++i) {
       double& shift = shift_[2 * units_[open[i] / 2].set + open[i] % 2];
       shift = std::max(shift, found[i]);
@@ -768,8 +762,7 @@ class LeastShift::Round {
 
   /// Finds shifts to begin with from a few poses of each long range.
   void find_first_bounds() {
-    const ParallelScope scope;
-    const auto run = piece_of(scope, [&](std::size_t side) {
+    for_each_parallel(shift_.size(), [&](std::size_t side) {
       const PointsToFree& set = sets_[side / 2];
       if (!blocks_[side / 2]) return;
       const std::uint64_t poses = std::uint64_t{set.last} - set.first + 1;
@@ -788,8 +781,6 @@ class LeastShift::Round {
         shift_[side] = search.run(shift_[side]);
       }
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, shift_.size(), run);
   }
 
   const LeastShift& shifts_;
@@ -837,14 +828,10 @@ std::vector<SideShifts> LeastShift::least(const Quantisation& quantisation,
       }
     }
     std::vector<std::optional<PointBlocks>> blocks(end - begin);
-    const ParallelScope scope;
-    const auto build = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(blocks.size(), [&](std::size_t i) {
       const std::span<QuantumPoint> points = sets[begin + i].points;
       if (!points.empty() && !progress.stop_requested()) blocks[i].emplace(quantisation, points);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, blocks.size(), build);
-    scope.end();
     throw_if_stopped(progress);
     Round round(*this, sets.subspan(begin, end - begin), blocks, most, progress);
     std::ranges::copy(round.run(units), std::back_inserter(out));

@@ -1,6 +1,5 @@
 #include "io/files/deflate.hpp"
 
-#include <tbb/parallel_for.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 
@@ -85,12 +84,9 @@ std::string deflated(std::string_view bytes, DeflateForm form, int level) {
 std::string deflated_in_blocks(std::string_view bytes, int level) {
   if (bytes.size() <= kDeflateBlock) return deflated(bytes, DeflateForm::kZlib, level);
   std::vector<DeflatedBlock> blocks((bytes.size() + kDeflateBlock - 1) / kDeflateBlock);
-  const ParallelScope scope;
-  const auto piece = piece_of(
-      scope, [&](std::size_t i) { blocks[i] = deflated_block(bytes, i * kDeflateBlock, level); });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, blocks.size(), piece);
-  scope.end();
+  for_each_parallel(blocks.size(), [&](std::size_t i) {
+    blocks[i] = deflated_block(bytes, i * kDeflateBlock, level);
+  });
   constexpr std::size_t kHeader = 2;
   std::string out = deflated({}, DeflateForm::kZlib, level).substr(0, kHeader);
   uLong checksum = 1;

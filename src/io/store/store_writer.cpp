@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <hdf5.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,10 +18,10 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/file.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/kept_warnings.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/point_columns.hpp"
 #include "io/store/store_metadata.hpp"
@@ -354,11 +353,8 @@ struct StoreWriter::State {
 
   void confirm_addresses() const {
     const File reread = File::open_for_reading(path);
-    const ParallelScope scope;
-    const auto confirm =
-        piece_of(scope, [&](std::size_t chunk) { confirm_address(reread, written(chunk)); });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, index.bytes.size() / 4 * (4 + columns.size()), confirm);
+    for_each_parallel(index.bytes.size() / 4 * (4 + columns.size()),
+                      [&](std::size_t chunk) { confirm_address(reread, written(chunk)); });
   }
 };
 

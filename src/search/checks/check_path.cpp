@@ -350,42 +350,16 @@ constexpr double kSurelyAlongAxis = 0.95;
 
 double greatest_share(const Vec3& shares) { return std::max({shares.x, shares.y, shares.z}); }
 
-struct Misreading {
-  Reading reading;
-  const char* sentence;
-};
-constexpr Misreading kMisreadings[] = {
-    {Reading::kTransposed,
-     "It moves along its axis when the rotations are transposed: they seem to be column-major, or "
-     "to turn the scan into the model's frame"},
-    {Reading::kScalarFirst,
-     "It moves along its axis when the quaternions are read as w x y z, not as x y z w"},
-    {Reading::kScalarLast,
-     "It moves along its axis when the quaternions are read as x y z w, not as w x y z"}};
-
-/// A sentence that says how the rotations may have been misread; nullptr where no reading makes the
-/// model move along an axis.
-const char* misreading(const Drive& drive) {
-  for (const Misreading& other : kMisreadings) {
-    const bool fits = greatest_share(drive.along_axes(other.reading)) > kSurelyAlongAxis &&
-                      drive.upright(other.reading) > kSurelyAlongAxis;
-    if (fits) return other.sentence;
-  }
-  return nullptr;
-}
-
 bool warn_of_rotations(const Question& question, const Drive& drive, MessageLog& log) {
   const double share = greatest_share(drive.along_axes());
   if (share >= kAlongAxis) return false;
   constexpr double kTurns = 0.97;
-  const char* other = misreading(drive);
   const bool still = drive.never_turns() && drive.straightness() < kTurns;
   const std::string why =
-      other != nullptr ? other
-      : still ? "All rotations are the same although the path turns: do the poses lack their "
-                "rotations?"
-              : "Check order, sign and zero direction of the angles, and the frame that the poses "
-                "are of";
+      still ? "All rotations are the same although the path turns: do the poses lack their "
+              "rotations?"
+            : "Check order, sign and zero direction of the angles, and the frame that the poses "
+              "are of";
   log.warn("rotations",
            "the " + std::string(question.words().mover) +
                " does not move along one of its own axes: only " + share_text(share) +
@@ -398,13 +372,11 @@ bool warn_of_tilt(const Question& question, const Drive& drive, MessageLog& log)
   const double upright = drive.upright();
   constexpr double kTilted = 0.5;  // 60 degrees on average
   if (upright >= kTilted) return false;
-  const char* other = misreading(drive);
   log.warn("tilted",
            "the " + std::string(question.words().mover) + "'s z axis " +
                (upright < -kTilted ? "points down" : "does not point up") +
                " along the path: the poses seem to be of a frame with other axes, such as a "
-               "camera's, or with z down" +
-               (other != nullptr ? std::string(". ") + other : ""),
+               "camera's, or with z down",
            {{"mean_z", upright}});
   return true;
 }
@@ -505,13 +477,8 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
   const auto& poses = question.query.poses;
   constexpr std::size_t kMany = 10;
   if (poses.size() < kMany) return;
-  const Vec3 first = poses.front().position();
-  Box path{first, first};
-  for (const Pose& pose : poses) {
-    const Vec3 p = pose.position();
-    path = path.united({p, p});
-  }
-  const double across = 2 * half_diagonal(path), longest = Sides(question.model).longest;
+  const double across = 2 * half_diagonal(box_of_positions(poses));
+  const double longest = Sides(question.model).longest;
   constexpr double kHuge = 200;  // metres: a longer model has the wrong unit itself
   if (!(across < longest / 4) || longest > kHuge * question.metre) return;
   if (!hardly_turns(question) && !is_small_drive(question, across)) return;

@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/motion_tree_ref.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
 #include "search/checks/checks.hpp"
 #include "search/checks/facts/path_facts.hpp"
@@ -94,7 +95,7 @@ class Trial {
         cover_(cover),
         slice_(body_slice(question.model)),
         tried_(spread_poses(question.query.poses.size(), kTried)),
-        path_(path_box()) {}
+        path_(box_of_positions(question.query.poses)) {}
 
   std::string remedy() const {
     if (question_.unit != LengthUnit::kDegrees && looks_like_degrees()) {
@@ -115,16 +116,6 @@ class Trial {
 
  private:
   LengthUnit unit() const { return question_.unit; }
-
-  Box path_box() const {
-    const Vec3 first = question_.query.poses.front().position();
-    Box box{first, first};
-    for (const Pose& pose : question_.query.poses) {
-      const Vec3 p = pose.position();
-      box = box.united({p, p});
-    }
-    return box;
-  }
 
   template <typename CoversPose>
   bool most_of(CoversPose covers) const {

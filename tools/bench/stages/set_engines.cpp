@@ -10,8 +10,8 @@
 #include "io/paths/content_hash.hpp"
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
-#include "search/page_search.hpp"
 #include "search/result_header.hpp"
+#include "search/visit.hpp"
 #include "stream/search_journal.hpp"
 #include "stream/write_result.hpp"
 #ifdef CLEARWAY_CUDA
@@ -87,12 +87,13 @@ Json search_with_set_engines(const SetEngines& asked) {
   RowsInMemory kept;
   AnswerRows rows(store, query, kept);
   FoundAnswer found{.rows = &rows};
-  SearchEnd end = search_pages(store,
-                               {.query = query,
-                                .memory_bytes = options.memory_bytes,
-                                .kind = *kind,
-                                .collect = keep_answer(store, rows, found.profile, nullptr)},
-                               {}, progress, report, log);
+  VisitEnd end = run_visit(store,
+                           {.query = query,
+                            .memory_bytes = options.memory_bytes,
+                            .kind = *kind,
+                            .collect = keep_answer(store, rows, found.profile, nullptr),
+                            .least_write_bytes = least_write_bytes(store, query)},
+                           progress, report, log);
   const std::uint64_t model_hash = hash_of_model(query.model);
   const ResultHeader header =
       result_header(store, query, std::span(&model_hash, 1),

@@ -12,7 +12,7 @@
 #include "io/store/store_reader.hpp"
 #include "search/kept_models.hpp"
 #include "search/kinds/sweep_kind.hpp"
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 #include "stream/search_journal.hpp"
 
 namespace clearway::bench {
@@ -116,14 +116,13 @@ class Share {
     RowsInMemory kept_rows;
     AnswerRows rows(store, query, kept_rows);
     ProfileSet no_profile;
-    SearchEnd end = search_pages(store,
-                                 {.query = query,
-                                  .memory_bytes = options_.memory_bytes,
-                                  .kind = kind,
-                                  .collect = keep_answer(store, rows, no_profile, nullptr)},
-                                 {}, progress, report, log);
+    run_visit(store,
+              {.query = query,
+               .memory_bytes = options_.memory_bytes,
+               .kind = kind,
+               .collect = keep_answer(store, rows, no_profile, nullptr)},
+              progress, report, log);
     const double seconds = clock.seconds();
-    end.engine_end.clear();
     const SweepStatistics& tests = kind.tests();
     return {{"seconds", seconds},
             {"field_seconds", report.seconds.field},

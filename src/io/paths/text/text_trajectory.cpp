@@ -1,7 +1,6 @@
 #include "io/paths/text/text_trajectory.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -12,8 +11,8 @@
 #include <vector>
 
 #include "clearway/answer.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
 #include "io/files/thread_limit.hpp"
@@ -105,12 +104,7 @@ class TextTrajectory {
       if (!add_lines(block, part)) good = false;
       parts[i] = std::move(part);
     };
-    const ParallelScope scope;
-    const auto piece = piece_of(scope, read_one);
-    in_all_threads([&] {
-      scope.begin();
-      tbb::parallel_for(std::size_t{0}, parts.size(), piece);
-    });
+    in_all_threads([&] { for_each_parallel(parts.size(), read_one); });
     if (good) rows_->append(std::move(parts));
     return good;
   }

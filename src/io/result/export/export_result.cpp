@@ -1,7 +1,5 @@
 #include "io/result/export/export_result.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -19,8 +17,8 @@
 #include "clearway/error.hpp"
 #include "clearway/result.hpp"
 #include "core/describe/labels.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/file.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/export/position_text.hpp"
@@ -39,12 +37,9 @@ inline constexpr std::size_t kBlockRows = 1 << 12;
 /// Calls work(block, first row, end) for each block of rows, with many threads.
 template <typename Work>
 void for_each_block(std::size_t rows, Work work) {
-  const ParallelScope scope;
-  const auto run_block = piece_of(scope, [&](std::size_t block) {
+  for_each_parallel((rows + kBlockRows - 1) / kBlockRows, [&](std::size_t block) {
     work(block, block * kBlockRows, std::min(rows, (block + 1) * kBlockRows));
   });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, (rows + kBlockRows - 1) / kBlockRows, run_block);
 }
 
 /// Appends rows to a file. Many threads format them with write_rows(text, first row, end).

@@ -9,7 +9,7 @@
 
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
-#include "io/files/nested_loop.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/scans/laz/coding/entropy_models.hpp"
 
 namespace clearway::laz {

@@ -7,7 +7,7 @@
 #include <charconv>
 #include <span>
 
-#include "io/files/nested_loop.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/text/table_header.hpp"
 

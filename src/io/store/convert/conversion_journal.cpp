@@ -1,7 +1,6 @@
 #include "io/store/convert/conversion_journal.hpp"
 
 #include <fcntl.h>
-#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -19,7 +18,7 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/shortened.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/convert/conversion_identity.hpp"
 #include "io/store/convert/input_files.hpp"
@@ -681,15 +680,12 @@ void ConversionJournal::check_units() {
   written_cells_ = 0;
   for_each_unit([&](std::vector<WrittenCell>& cells) {
     std::atomic<bool> is_whole = all_whole;
-    const ParallelScope scope;
-    const auto check = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(cells.size(), [&](std::size_t i) {
       std::vector<std::byte> bytes;
       for (const ChunkPlace& chunk : cells[i].chunks) {
         if (is_whole && !read_chunk(*written_, size, chunk, bytes)) is_whole = false;
       }
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, cells.size(), check);
     all_whole = is_whole;
     if (!all_whole) return;
     ++whole;

@@ -1,14 +1,13 @@
 #include "io/store/convert/count.hpp"
 
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <array>
 #include <map>
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/points_hash.hpp"
@@ -121,14 +120,12 @@ BinCounter& gather(tbb::enumerable_thread_specific<BinCounter>& counters) {
     if (&counter != all.front()) all.push_back(&counter);
   }
   for (std::size_t step = 1; step < all.size(); step *= 2) {
-    const ParallelScope scope;
-    const auto merge = piece_of(scope, [&](std::size_t i) {
-      if (i + step >= all.size()) return;
+    const std::size_t pairs = (all.size() + step - 1) / (2 * step);
+    for_each_parallel(pairs, [&](std::size_t pair) {
+      const std::size_t i = 2 * step * pair;
       all[i]->merge(*all[i + step]);
       all[i + step]->clear();
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, all.size(), 2 * step, merge);
   }
   return *all.front();
 }

@@ -1,7 +1,5 @@
 #include "io/store/convert/distribute.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -10,7 +8,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/origin_table.hpp"
@@ -62,11 +60,7 @@ UnitPoints Distribution::take(std::size_t unit) {
 
 void Distribution::close_files() {
   std::vector<File> files = std::exchange(files_, {});
-  const ParallelScope scope;
-  const auto close =
-      piece_of(scope, [&](std::size_t i) { const File closed(std::move(files[i])); });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, files.size(), close);
+  for_each_parallel(files.size(), [&](std::size_t i) { const File closed(std::move(files[i])); });
 }
 
 namespace {
@@ -176,8 +170,7 @@ std::size_t count_whole(const Distribution& distribution, std::span<const Distri
     firsts.push_back(std::move(of_batch));
   }
   std::atomic<std::size_t> whole = firsts.size();
-  const ParallelScope scope;
-  const auto check = piece_of(scope, [&](std::size_t i) {
+  for_each_parallel(firsts.size(), [&](std::size_t i) {
     if (i >= whole) return;
     std::vector<DistributedPoint> points;
     for (std::size_t k = 0; k < batches[i].groups.size(); ++k) {
@@ -192,8 +185,6 @@ std::size_t count_whole(const Distribution& distribution, std::span<const Distri
       return;
     }
   });
-  scope.begin();
-  tbb::parallel_for(std::size_t{0}, firsts.size(), check);
   return whole;
 }
 

@@ -1,12 +1,10 @@
 #include "io/store/convert/pack_unit.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <span>
 
 #include "core/cloud/packed_cloud.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/store/convert/quantum_bounds.hpp"
 #include "io/store/convert/select_split.hpp"
 
@@ -181,14 +179,11 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
   const std::size_t first = state.next;
   std::vector<PackedCell> packed(std::min(most, cells_left()));
   {
-    const ParallelScope scope;
-    const auto pack = piece_of(scope, [&](std::size_t i) {
+    for_each_parallel(packed.size(), [&](std::size_t i) {
       const auto running = state.clocks.measure(Stage::kPack);
       packed[i] =
           pack_cell(state.unit, state.cells[first + i], state.cell_points, state.has_classes);
     });
-    scope.begin();
-    tbb::parallel_for(std::size_t{0}, packed.size(), pack);
   }
   state.next += packed.size();
   return packed;

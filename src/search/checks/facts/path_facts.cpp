@@ -4,34 +4,10 @@
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
+#include "core/trajectory/trajectory_summary.hpp"
 
 namespace clearway {
 namespace {
-
-/// The quaternion x, y, z, w of a rotation, of unit length. Source: Shepperd 1978, by the largest
-/// of the four numbers.
-std::array<double, 4> quaternion_of(const std::array<double, 9>& r) {
-  const double squares[4] = {1 + r[0] - r[4] - r[8], 1 - r[0] + r[4] - r[8], 1 - r[0] - r[4] + r[8],
-                             1 + r[0] + r[4] + r[8]};
-  const double cross[4][4] = {{0, r[1] + r[3], r[2] + r[6], r[7] - r[5]},
-                              {r[1] + r[3], 0, r[5] + r[7], r[2] - r[6]},
-                              {r[2] + r[6], r[5] + r[7], 0, r[3] - r[1]},
-                              {r[7] - r[5], r[2] - r[6], r[3] - r[1], 0}};
-  const auto largest = static_cast<std::size_t>(std::max_element(squares, squares + 4) - squares);
-  std::array<double, 4> q{};
-  const double root = std::sqrt(std::max(squares[largest], 0.0));
-  for (std::size_t k = 0; k < 4; ++k) {
-    q[k] = k == largest ? root / 2 : cross[largest][k] / (2 * root);
-  }
-  return q;
-}
-
-std::array<double, 9> rotation_of(const std::array<double, 4>& q) {
-  const auto [x, y, z, w] = q;
-  return {1 - 2 * (y * y + z * z), 2 * (x * y - z * w),     2 * (x * z + y * w),
-          2 * (x * y + z * w),     1 - 2 * (x * x + z * z), 2 * (y * z - x * w),
-          2 * (x * z - y * w),     2 * (y * z + x * w),     1 - 2 * (x * x + y * y)};
-}
 
 std::array<double, 9> unscaled(const Pose& pose) {
   std::array<double, 9> out{};
@@ -45,46 +21,21 @@ constexpr double kShortest = 0.5;
 
 }  // namespace
 
-std::array<double, 9> reread(const std::array<double, 9>& r, Reading reading) {
-  switch (reading) {
-    case Reading::kTransposed:
-      return {r[0], r[3], r[6], r[1], r[4], r[7], r[2], r[5], r[8]};
-    case Reading::kScalarFirst: {  // a quaternion w x y z was read as x y z w
-      const auto [x, y, z, w] = quaternion_of(r);
-      return rotation_of({y, z, w, x});
-    }
-    case Reading::kScalarLast: {  // a quaternion x y z w was read as w x y z
-      const auto [x, y, z, w] = quaternion_of(r);
-      return rotation_of({w, x, y, z});
-    }
-    case Reading::kAsGiven:
-      break;
-  }
-  return r;
-}
-
 Drive::Drive(const Question& question)
     : Drive(question.query,
             std::max(Sides(question.model).longest / 2, kShortest * question.metre)) {}
 
 Drive::Drive(const Query& query, double length) {
-  const auto& poses = query.poses;
-  std::size_t from = 0;
-  for (std::size_t to = 1; to < poses.size(); ++to) {
-    const Vec3 way = difference(poses[to].position(), poses[from].position());
-    const double far = std::sqrt(squared_length(way.x, way.y, way.z));
-    if (!(far >= length)) continue;
-    const Pose& middle = poses[from + (to - from) / 2];
-    pieces_.push_back({{way.x / far, way.y / far, way.z / far}, unscaled(middle)});
-    from = to;
+  for (const Chord& chord : chords_of(query.poses, length)) {
+    pieces_.push_back({chord.direction, unscaled(query.poses[chord.middle])});
   }
 }
 
-Vec3 Drive::along_axes(Reading reading) const {
+Vec3 Drive::along_axes() const {
   Vec3 shares{};
   double sum = 0;
   for (const Piece& piece : pieces_) {
-    const auto r = reread(piece.rotation, reading);
+    const auto& r = piece.rotation;
     const Vec3& d = piece.direction;
     for (std::size_t k = 0; k < 3; ++k) {
       const double along = r[k] * d.x + r[3 + k] * d.y + r[6 + k] * d.z;
@@ -106,9 +57,9 @@ double Drive::forwards(int axis) const {
   return sum / static_cast<double>(pieces_.size());
 }
 
-double Drive::upright(Reading reading) const {
+double Drive::upright() const {
   double sum = 0;
-  for (const Piece& piece : pieces_) sum += reread(piece.rotation, reading)[8];
+  for (const Piece& piece : pieces_) sum += piece.rotation[8];
   return sum / static_cast<double>(pieces_.size());
 }
 

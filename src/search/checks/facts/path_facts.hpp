@@ -10,12 +10,6 @@
 
 namespace clearway {
 
-/// How the rotations of a trajectory may have been misread.
-enum class Reading { kAsGiven, kTransposed, kScalarFirst, kScalarLast };
-
-/// The rotation that was meant, if `rotation` was read from its numbers in the given way.
-std::array<double, 9> reread(const std::array<double, 9>& rotation, Reading reading);
-
 /// A path as a vehicle drives it: pieces about half as long as the model, each with its direction
 /// and with the rotation at its middle. Because of that length, noise of the positions of a
 /// standing vehicle does not count.
@@ -30,12 +24,12 @@ class Drive {
   bool is_one() const { return pieces_.size() >= 8; }
 
   /// Shares of the motion along the model's x, y and z axes; their sum is 1.
-  Vec3 along_axes(Reading reading = Reading::kAsGiven) const;
+  Vec3 along_axes() const;
   /// The mean, over the pieces, of the direction of motion along one of the model's axes: 1 where
   /// the model moves straight along it and -1 where it moves backwards.
   double forwards(int axis) const;
   /// The mean of the z component of the model's z axis in the scan, 1 for an upright model.
-  double upright(Reading reading = Reading::kAsGiven) const;
+  double upright() const;
   /// How far the directions of motion agree: 1 for a straight path, lower where it turns.
   double straightness() const;
   /// For each piece that is not vertical, how far the model's z axis leans to the right of the

@@ -1,14 +1,13 @@
 #include "search/checks/facts/path_looks.hpp"
 
 #include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/geometry/point_box.hpp"
-#include "core/util/tsan_annotations.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "search/checks/facts/scan_facts.hpp"
 
 namespace clearway {
@@ -252,14 +251,12 @@ PathLooks::PathLooks(const Question& question, const PathCover& cover)
   }
   // Looks that follow each other read the same cells, so a thread takes several of them.
   constexpr std::size_t kLooksOfTask = 16;
-  const tbb::blocked_range<std::size_t> all(0, looks_.size(), kLooksOfTask);
-  const ParallelScope scope;
-  const auto look = piece_of(scope, [&](const tbb::blocked_range<std::size_t>& part) {
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto look = [&](const Range& part) {
     const Looking looking(question, cover);
     for (std::size_t i = part.begin(); i < part.end(); ++i) looking.at(looks_[i]);
-  });
-  scope.begin();
-  tbb::parallel_for(all, look, tbb::simple_partitioner());
+  };
+  for_each_parallel(Range(0, looks_.size(), kLooksOfTask), look, tbb::simple_partitioner());
 }
 
 double PathLooks::apart() const {

@@ -1,5 +1,5 @@
 // Budgets of engines that work on pages, with memory on a device that is made up.
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 
 #include <functional>
 #include <optional>
@@ -8,6 +8,7 @@
 #include "search/kinds/sweep_kind.hpp"
 #include "search/line_of_points.hpp"
 #include "stream/search_journal.hpp"
+#include "stream/write_result.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
 
@@ -61,13 +62,15 @@ struct Line : LineOfPoints {
       journal.emplace(folder / name, JournalIdentity{}, nullptr, *store, query, 1e9);
       keep = keep_answer(*store, journal->rows(), no_profile, &*journal);
     };
-    search_pages(*store,
-                 {.query = query,
-                  .memory_bytes = options.memory_bytes,
-                  .kind = *kind,
-                  .collect = [&](std::span<const PlannedCell> cells,
-                                 const PageResult& page) { keep(cells, page); }},
-                 {.made = open}, progress, report, log);
+    run_visit(*store,
+              {.query = query,
+               .memory_bytes = options.memory_bytes,
+               .kind = *kind,
+               .collect = [&](std::span<const PlannedCell> cells,
+                              const PageResult& page) { keep(cells, page); },
+               .least_write_bytes = least_write_bytes(*store, query),
+               .made = open},
+              progress, report, log);
     return journal->rows().points(PointQuestion::kHits);
   }
 

@@ -1,4 +1,4 @@
-#include "search/page_search.hpp"
+#include "search/visit.hpp"
 
 #include <algorithm>
 #include <optional>
@@ -46,59 +46,54 @@ int useful_threads(const PackedCloud& cloud, const Query& query, std::span<const
 
 /// Runs the planned cells that are not answered yet. Returns how many points of them were not
 /// searched.
-std::uint64_t run_planned(const PackedCloud& cloud, const PageSearch& asked, PageBudget& budget,
+std::uint64_t run_planned(const PackedCloud& cloud, const Visit& visit, PageBudget& budget,
                           std::span<PageEngine* const> engines, Progress& progress,
                           SearchReport& report) {
   std::vector<PlannedCell>& cells = budget.cells();
-  if (asked.answered) {
-    std::erase_if(cells, [&](const PlannedCell& cell) { return asked.answered(cell.cell); });
+  if (visit.answered) {
+    std::erase_if(cells, [&](const PlannedCell& cell) { return visit.answered(cell.cell); });
   }
   const std::vector<PlannedPage> pages =
       paginate(cloud, cells, budget.layout().page_bytes, budget.layout().cells,
-               asked.query.ignores_points());
+               visit.query.ignores_points());
   report.pages = pages.size();
   for (const PageEngine* engine : engines) report.slots += engine->slots();
   StageTimes stages;
   const std::uint64_t ignored =
       run_pages(cloud, cells, pages, engines,
-                {.stage = asked.stage,
+                {.stage = visit.stage,
                  .ignored = budget.ignored(),
-                 .threads = useful_threads(cloud, asked.query, cells, asked.kind.needs())},
-                asked.collect, progress, stages);
+                 .threads = useful_threads(cloud, visit.query, cells, visit.kind.needs())},
+                visit.collect, progress, stages);
   report_stages(stages, report.seconds);
   return ignored;
 }
 
-std::vector<PageEngine*> lanes_of(const PageEngines& engines) {
-  std::vector<PageEngine*> lanes;
-  for (const auto& engine : engines) lanes.push_back(engine.get());
-  return lanes;
-}
-
 }  // namespace
 
-SearchEnd search_pages(const StoreReader& store, const PageSearch& asked, const SearchSteps& steps,
-                       Progress& progress, SearchReport& report, const MessageLog& log) {
+VisitEnd run_visit(const PackedCloud& cloud, const Visit& visit, Progress& progress,
+                   SearchReport& report, const MessageLog& log) {
   throw_if_stopped(progress);
-  const std::uint64_t least = least_write_bytes(store, asked.query);
-  PageEngineKind& kind = asked.kind;
-  PageBudget budget(store, asked.query, asked.memory_bytes, kind, asked.only, least, asked.search);
+  PageEngineKind& kind = visit.kind;
+  PageBudget budget(cloud, visit.query, visit.memory_bytes, kind, visit.only,
+                    visit.least_write_bytes, visit.search);
   budget.find();
   report_plan(budget, kind, report, log);
 
   throw_if_stopped(progress);
-  if (steps.planned) steps.planned(budget.needed_bytes(), kind.own_device_bytes(budget.layout()));
+  if (visit.planned) visit.planned(budget.needed_bytes(), kind.own_device_bytes(budget.layout()));
   const Stopwatch making;
   PageEngines engines = kind.make(budget.layout());
   report.seconds.engine = making.seconds();
-  if (steps.made) steps.made();
-  const std::vector<PageEngine*> lanes = lanes_of(engines);
-  SearchEnd end{.ignored_points = run_planned(store, asked, budget, lanes, progress, report),
-                .write_bytes = budget.write_bytes()};
+  if (visit.made) visit.made();
+  std::vector<PageEngine*> lanes;
+  for (const auto& engine : engines) lanes.push_back(engine.get());
+  VisitEnd end{.ignored_points = run_planned(cloud, visit, budget, lanes, progress, report),
+               .write_bytes = budget.write_bytes()};
   kind.report_search({lanes.data(), lanes.size()}, report, log);
   end.engine_end = kind.end(std::move(engines));
   // The engines are taken down while the result is written, unless memory is too scarce for both.
-  if (end.write_bytes / 2 >= report.pinned_bytes + least) {
+  if (end.write_bytes / 2 >= report.pinned_bytes + visit.least_write_bytes.value_or(0)) {
     end.write_bytes -= report.pinned_bytes;
   } else {
     end.engine_end.clear();
@@ -106,22 +101,11 @@ SearchEnd search_pages(const StoreReader& store, const PageSearch& asked, const 
   return end;
 }
 
-CollectedPages collect_pages(const PackedCloud& cloud, const PageSearch& asked,
-                             Progress& progress) {
-  PageEngineKind& kind = asked.kind;
-  PageBudget budget(cloud, asked.query, asked.memory_bytes, kind, asked.only, std::nullopt,
-                    asked.search);
-  budget.find();
-  throw_if_stopped(progress);
-  PageEngines engines = kind.make(budget.layout());
-  const std::vector<PageEngine*> lanes = lanes_of(engines);
-  SearchReport taken;
-  run_planned(cloud, asked, budget, lanes, progress, taken);
+SearchReport run_visit(const PackedCloud& cloud, const Visit& visit, Progress& progress) {
+  SearchReport report;
   const MessageCallback silent;
-  std::vector<Message> none;
-  kind.report_search({lanes.data(), lanes.size()}, taken, MessageLog(silent, none));
-  kind.end(std::move(engines)).clear();
-  return {budget.needed_bytes(), taken.peak_device_bytes};
+  run_visit(cloud, visit, progress, report, MessageLog(silent, report.warnings)).engine_end.clear();
+  return report;
 }
 
 }  // namespace clearway
