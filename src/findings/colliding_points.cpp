@@ -19,18 +19,18 @@ constexpr std::size_t kAll = ~std::size_t{0};
 std::size_t requantize_rows(const Quantisation& quantisation, const std::vector<Vec3>& xyz,
                             QuantumPoint* out) {
   std::atomic<std::size_t> bad{kAll};
-  for_each_parallel(tbb::blocked_range<std::size_t>(0, xyz.size(), 4096),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        for (int k = 0; k < 3; ++k) {
-                          const auto q = quantum_at(quantisation, k, xyz[i][k]);
-                          out[i].q[k] = q.value_or(0);
-                          if (q) continue;
-                          std::size_t first = bad.load();
-                          while (i < first && !bad.compare_exchange_weak(first, i)) continue;
-                        }
-                      }
-                    });
+  using Range = tbb::blocked_range<std::size_t>;
+  for_each_parallel(Range(0, xyz.size(), 4096), [&](const Range& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto q = quantum_at(quantisation, k, xyz[i][k]);
+        out[i].q[k] = q.value_or(0);
+        if (q) continue;
+        std::size_t first = bad.load();
+        while (i < first && !bad.compare_exchange_weak(first, i)) continue;
+      }
+    }
+  });
   return bad.load();
 }
 

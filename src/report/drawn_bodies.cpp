@@ -1,7 +1,5 @@
 #include "report/drawn_bodies.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle.hpp"
 #include "core/query/body_numbers.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "report/shown_poses.hpp"
 
@@ -137,7 +136,7 @@ void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std:
   }
   const std::size_t first = columns.size();
   for (const char* name : kNames) columns.push_back({name, {}});
-  tbb::parallel_for(std::size_t{0}, values.size(), [&](std::size_t k) {
+  for_each_parallel(values.size(), [&](std::size_t k) {
     columns[first + k].base64 = deflated_base64(delta_planes(values[k]));
   });
 }

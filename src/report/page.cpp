@@ -1,6 +1,5 @@
 #include "report/page.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -14,6 +13,7 @@
 #include "findings/row_pieces.hpp"
 #include "io/files/deflate.hpp"
 #include "io/files/file.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/result/conflicts/markup_text.hpp"
 
 namespace clearway {
@@ -109,7 +109,7 @@ void sort_along_curve(std::vector<PagePoint>& points) {
   int shift = 0;
   while (extent >> shift >= std::int64_t{1} << kCurveBits) ++shift;
   std::vector<Placed> placed(points.size());
-  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+  for_each_parallel(points.size(), [&](std::size_t i) {
     std::uint64_t key = 0;
     for (int k = 0; k < 3; ++k) {
       key |= spread_bits(static_cast<std::uint64_t>(std::int64_t{points[i].q[k]} - lo[k]) >> shift)
@@ -118,8 +118,7 @@ void sort_along_curve(std::vector<PagePoint>& points) {
     placed[i] = {key, points[i]};
   });
   tbb::parallel_sort(placed.begin(), placed.end());
-  tbb::parallel_for(std::size_t{0}, points.size(),
-                    [&](std::size_t i) { points[i] = placed[i].point; });
+  for_each_parallel(points.size(), [&](std::size_t i) { points[i] = placed[i].point; });
 }
 
 std::string delta_planes(std::span<const std::int32_t> values) {
@@ -162,7 +161,7 @@ void append_columns(const std::string& name, const std::vector<PagePoint>& point
                     std::vector<PageColumn>& columns) {
   const std::size_t first = columns.size();
   for (const char* axis : {".x", ".y", ".z", ".tag"}) columns.push_back({name + axis, {}});
-  tbb::parallel_for(0, 4, [&](int k) {
+  for_each_parallel(4, [&](int k) {
     std::string bytes;
     if (k < 3) {
       std::vector<std::int32_t> values(points.size());

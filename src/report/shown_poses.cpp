@@ -1,13 +1,13 @@
 #include "report/shown_poses.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <type_traits>
 #include <utility>
+
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -136,7 +136,7 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
   });
   const std::size_t first = columns.size();
   for (const NumberColumn& column : numbers) columns.push_back({column.name, {}});
-  tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t k) {
+  for_each_parallel(numbers.size(), [&](std::size_t k) {
     columns[first + k].base64 = deflated_base64(delta_planes(numbers[k].values));
   });
   for_each_label([&](const auto& label) {

@@ -44,13 +44,13 @@ void block_cells(const PackedCloud& cloud, const IgnoredPoints& ignored, const S
           ignored.mask(cell, searched, [&] { return coordinates; });
         }
         const auto blocks = static_cast<std::uint32_t>(divide_up(count, kBlockPoints));
-        for_each_parallel(static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce)),
-                          [&](std::uint32_t part) {
-                            throw_if_stopped(progress);
-                            const std::uint32_t first = part * kBlocksAtOnce;
-                            search.search(cell, coordinates, searched, bins, first,
-                                          std::min(first + kBlocksAtOnce, blocks));
-                          });
+        const auto parts = static_cast<std::uint32_t>(divide_up(blocks, kBlocksAtOnce));
+        for_each_parallel(parts, [&](std::uint32_t part) {
+          throw_if_stopped(progress);
+          const std::uint32_t first = part * kBlocksAtOnce;
+          search.search(cell, coordinates, searched, bins, first,
+                        std::min(first + kBlocksAtOnce, blocks));
+        });
       }
       progress.advance(count);
     });

@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,6 +12,7 @@
 #include "core/query/ignored_points.hpp"
 #include "core/section/section_lattice.hpp"
 #include "core/util/format.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/content_hash.hpp"
@@ -66,7 +65,7 @@ class WitnessSearch {
   std::vector<std::optional<SectionWitness>> run() {
     found_.resize(looks_.size());
     in_all_threads([&] {
-      tbb::parallel_for(std::size_t{0}, store_.cells().size(),
+      for_each_parallel(store_.cells().size(),
                         [&](std::size_t i) { search_cell(static_cast<std::uint32_t>(i)); });
     });
     std::vector<std::optional<SectionWitness>> out(looks_.size());

@@ -158,13 +158,11 @@ class StoreBeams {
   /// The cells, among those of `only`, whose beams are to be followed; sets beams.origin_minbits.
   std::vector<PlannedCell> cells(const ShardCells* only, Beams& beams, Progress& progress) const {
     std::vector<BeamReach> reach(store_.cells().size());
-    {
-      for_each_parallel(reach.size(), [&](std::size_t cell) {
-        const auto index = static_cast<std::uint32_t>(cell);
-        throw_if_stopped(progress);
-        reach[cell] = only == nullptr || only->contains(index) ? reach_of(index) : BeamReach{false};
-      });
-    }
+    for_each_parallel(reach.size(), [&](std::size_t cell) {
+      const auto index = static_cast<std::uint32_t>(cell);
+      throw_if_stopped(progress);
+      reach[cell] = only == nullptr || only->contains(index) ? reach_of(index) : BeamReach{false};
+    });
     std::vector<PlannedCell> cells;
     for (std::uint32_t cell = 0; cell < reach.size(); ++cell) {
       if (!reach[cell].enters) continue;

@@ -292,9 +292,7 @@ class Lane {
 void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
   std::deque<Lane> lanes;
   for (PageEngine* engine : engines) lanes.emplace_back(pages, *engine);
-  {
-    for_each_parallel(lanes.size(), [&](std::size_t lane) { lanes[lane].run(); });
-  }
+  for_each_parallel(lanes.size(), [&](std::size_t lane) { lanes[lane].run(); });
   if (pages.next < pages.pages.size()) throw Interrupted("interrupted");
 }
 

@@ -471,11 +471,11 @@ void fill_tables(const StoreReader& store, FoundAnswer answer, const ResultHeade
                                                      std::span<const Row> rows, std::uint64_t all,
                                                      std::uint64_t& kept, Rows& to) {
     if (kept == 0) put_columns(meaning, to, SizeColumn{all});
-    for_each_parallel(tbb::blocked_range<std::size_t>(0, rows.size(), kRowsOfThread),
-                      [&](const tbb::blocked_range<std::size_t>& part) {
-                        const std::span<const Row> of = rows.subspan(part.begin(), part.size());
-                        put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
-                      });
+    using Range = tbb::blocked_range<std::size_t>;
+    for_each_parallel(Range(0, rows.size(), kRowsOfThread), [&](const Range& part) {
+      const std::span<const Row> of = rows.subspan(part.begin(), part.size());
+      put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
+    });
     kept += rows.size();
   };
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();

@@ -1,6 +1,5 @@
 #include "findings/group/cell_grid.hpp"
 
-#include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
@@ -8,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+
+#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -46,7 +47,7 @@ void CellGrid::sort(std::span<const QuantumPoint> points, const Neighbourhood& n
   origin_ = least_of(points);
   points_.resize(points.size());
   const auto& edge = neighbourhood.cell();
-  tbb::parallel_for(Range(0, points.size(), kGrain), [&](const Range& range) {
+  for_each_parallel(Range(0, points.size(), kGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       GroupedPoint& out = points_[i];
       for (int k = 0; k < 3; ++k) {
@@ -82,7 +83,7 @@ void CellGrid::make_cells(std::span<const QuantumPoint> points) {
     first_.push_back(static_cast<std::uint32_t>(i));
   }
   first_.push_back(static_cast<std::uint32_t>(points_.size()));
-  tbb::parallel_for(Range(0, points_.size(), kGrain), [&](const Range& range) {
+  for_each_parallel(Range(0, points_.size(), kGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       std::copy_n(points[points_[i].row].q, 3, points_[i].q);
     }

@@ -41,17 +41,17 @@ struct PreparedModel {
 
   /// The prepared model of one of the last four runs with another model where it is the same,
   /// otherwise a new one. Valid until the next call.
-  static const PreparedModel& of(const Query& query, double most, bool at_once, int threads) {
+  static const PreparedModel& of(const Query& query, bool at_once, int threads) {
     static std::list<PreparedModel> last;
     const double asked = std::max(query.clearance, query.profile);
     for (const PreparedModel& one : last) {
-      if (one.radius == most && one.reach == asked && one.whole == at_once &&
+      if (one.radius == query.radius && one.reach == asked && one.whole == at_once &&
           one.model == query.model) {
         return one;
       }
     }
     if (last.size() == 4) last.pop_back();
-    return last.emplace_front(query.model, most, asked, at_once, threads);
+    return last.emplace_front(query.model, query.radius, asked, at_once, threads);
   }
 
   Model model;
@@ -66,8 +66,7 @@ template <typename Element, typename Make>
 SearchResult run_sweep_of(const PackedCloud& cloud, const Query& query, int threads,
                           const Make& make, bool whole_field) {
   if (query.model.empty()) return empty_result(cloud, query);
-  const auto& prepared =
-      PreparedModel<StoredElement<Element>>::of(query, query.radius, whole_field, threads);
+  const auto& prepared = PreparedModel<StoredElement<Element>>::of(query, whole_field, threads);
   const MotionTree motion(query.poses, prepared.tree.box(), query.between_poses);
   const SweepFilterOf<Element> filter(query, motion, prepared.tree, prepared.field, cloud);
   const std::vector<PlannedCell> cells = plan(cloud, filter);

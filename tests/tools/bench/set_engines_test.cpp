@@ -1,14 +1,9 @@
 // `clearway-bench search`: engines that are set as no `clearway run` sets them.
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "clearway/model.hpp"
-#include "clearway/trajectory.hpp"
 #include "io/result/result.hpp"
 #include "support/catch.hpp"
-#include "support/engines/brute_force.hpp"
 #include "support/result_fixture.hpp"
-#include "support/store_fixture.hpp"
 #include "tools/cli/support/hall.hpp"
 
 using namespace clearway;
@@ -18,16 +13,14 @@ using nlohmann::json;
 namespace {
 
 struct Searches : Work {
-  Outcome search(const std::string& options, const std::string& store = "") const {
+  Outcome search(const std::string& options) const {
     return run_program_at(CLEARWAY_BENCH_PROGRAM, folder,
-                          "search --env " + (store.empty() ? hall / "site.h5" : store) +
-                              " --model " + hall / "model.ply" + " --trajectory " +
-                              hall / "trajectory.txt" + " --radius 0.1 -o " + path("out.h5") + " " +
-                              options);
+                          "search --env " + hall / "site.h5" + " --model " + hall / "model.ply" +
+                              " --trajectory " + hall / "trajectory.txt" + " --radius 0.1 -o " +
+                              path("out.h5") + " " + options);
   }
-  std::vector<std::uint64_t> found(const std::string& options,
-                                   const std::string& store = "") const {
-    const Outcome done = search(options, store);
+  std::vector<std::uint64_t> found(const std::string& options) const {
+    const Outcome done = search(options);
     CAPTURE(options, done.err);
     require_success(done);
     return read_rows(ResultReader(folder / "out.h5")).source;

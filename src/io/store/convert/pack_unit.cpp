@@ -178,13 +178,10 @@ std::vector<PackedCell> OrderedUnit::pack_next() {
   const std::size_t most = std::max<std::size_t>(1, kBucketPoints / state.cell_points);
   const std::size_t first = state.next;
   std::vector<PackedCell> packed(std::min(most, cells_left()));
-  {
-    for_each_parallel(packed.size(), [&](std::size_t i) {
-      const auto running = state.clocks.measure(Stage::kPack);
-      packed[i] =
-          pack_cell(state.unit, state.cells[first + i], state.cell_points, state.has_classes);
-    });
-  }
+  for_each_parallel(packed.size(), [&](std::size_t i) {
+    const auto running = state.clocks.measure(Stage::kPack);
+    packed[i] = pack_cell(state.unit, state.cells[first + i], state.cell_points, state.has_classes);
+  });
   state.next += packed.size();
   return packed;
 }
