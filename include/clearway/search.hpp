@@ -61,13 +61,11 @@ struct SearchSeconds {
   double context = 0;
   double context_wait = 0;  ///< seconds that the search waited for the GPUs to start
   double check = 0;         ///< seconds for looking at the question before it is searched
-  double ignored = 0;       ///< seconds for counting the ignored points that would collide
   /// Seconds for making what the engine looks up: the model field, the grid's groups
   double field = 0;
   double plan = 0;
   double engine = 0;  ///< seconds for making the engine with its slots
   double search = 0, read = 0, upload = 0, compute = 0, collect = 0;
-  double below = 0;  ///< seconds for counting what would collide below the floor
   double depth = 0;  ///< seconds for finding the free point nearest to each colliding one
   double swept = 0;  ///< seconds for finding the cubes that the model sweeps
   double beams = 0;  ///< seconds for following the scanner's beams through these cubes
@@ -83,9 +81,6 @@ struct SearchReport : Answer {
   bool was_finished = false;  ///< true if the result existed already, so that nothing was searched
   /// Triangles of a surface, whose corners are model_points; otherwise 0
   std::uint64_t model_triangles = 0;
-  /// Number of ignored points in the cells that this search looked at. Cells from a journal and
-  /// cells that no pose comes near do not count.
-  std::uint64_t ignored_looked_at = 0;
 
   Engine engine = Engine::kSweep;  ///< the engine that searched
   Device device = Device::kCpu;

@@ -211,15 +211,11 @@ void CudaPageEngine::wait(std::uint32_t slot) {
   slots_[slot].on.finished.synchronise();
 }
 
+void CudaPageEngine::release(std::uint32_t slot) { release_cells(slots_[slot], true); }
+
 PageResult CudaPageEngine::finish(std::uint32_t index) {
   Slot& slot = slots_[index];
-  try {
-    wait(index);
-  } catch (...) {
-    release_cells(slot, false);
-    throw;
-  }
-  release_cells(slot, true);
+  wait(index);
   const ResultRun run(slot.shape, search_->parts());
   const std::byte* found = slot.host_result;
   PageResult result = run.arrays.in(found, run.blocks);

@@ -29,6 +29,7 @@ class CudaPageEngine : public PageEngine {
   void start_beside(PageEngine& first, std::uint32_t slot, const PageShape& shape) final;
   void wait(std::uint32_t slot) final;
   PageResult finish(std::uint32_t slot) final;
+  void release(std::uint32_t slot) final;
 
   /// Memory allocated on the device, without CUDA's context, in bytes; pinned_bytes() is the
   /// page-locked memory on the host.

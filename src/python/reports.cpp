@@ -26,9 +26,6 @@ void add_seconds(py::module_& module) {
       .def_readonly("check", &Seconds::check,
                     "Seconds of looking at the question before it was searched.")
       .def_readonly(
-          "ignored", &Seconds::ignored,
-          "Seconds of searching the ignored points too, to count how many of them would collide.")
-      .def_readonly(
           "field", &Seconds::field,
           "Seconds of making what the engine looks up, such as the field around the model.")
       .def_readonly("plan", &Seconds::plan,
@@ -40,8 +37,6 @@ void add_seconds(py::module_& module) {
       .def_readonly("upload", &Seconds::upload, "Seconds in which cells were copied to a GPU.")
       .def_readonly("compute", &Seconds::compute, "Seconds in which distances were computed.")
       .def_readonly("collect", &Seconds::collect, "Seconds in which what was found was gathered.")
-      .def_readonly("below", &Seconds::below,
-                    "Seconds of counting what would collide below the floor.")
       .def_readonly("swept", &Seconds::swept, "Seconds of finding the cubes that the model sweeps.")
       .def_readonly("beams", &Seconds::beams,
                     "Seconds of following the scanner's beams through these cubes.")
@@ -223,9 +218,7 @@ void add_findings_of(py::class_<Report, Answer>& report) {
       .def_readonly("was_finished", &Report::was_finished,
                     "Whether the result was there already, so that nothing was searched.")
       .def_readonly("model_triangles", &Report::model_triangles,
-                    "How many triangles the model has; 0 where it is points.")
-      .def_readonly("ignored_looked_at", &Report::ignored_looked_at,
-                    "How many of the ignored points were in cells that this search looked at.");
+                    "How many triangles the model has; 0 where it is points.");
 }
 
 void add_work_of(py::class_<Report, Answer>& report) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,7 +21,6 @@
 #include "io/files/thread_limit.hpp"
 #include "io/scans/length_unit.hpp"
 #include "search/checks/question.hpp"
-#include "search/visit.hpp"
 
 namespace clearway {
 namespace {
@@ -156,83 +156,26 @@ void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
   }
 }
 
-namespace {
-
-/// Finds points that are high above the lowest model point, in the frame of the body that touches
-/// them.
-class Heights {
- public:
-  Heights(const StoreReader& store, const Query& query)
-      : store_(store), bodies_(moving_bodies(query)), numbers_(query) {
-    bool any = false;
-    const auto lower_to = [&](const std::vector<Vec3>& model) {
-      for (const Vec3& p : model) {
-        if (!any || p.z < lowest_) lowest_ = p.z;
-        any = true;
-      }
-    };
-    for (const MovingBody& body : bodies_) lower_to(body.model.vertices);
-    limit_ = ground_height(store.metadata().unit);
+double above_ground(const StoreReader& store, const Query& query) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const MovingBody& body : moving_bodies(query)) {
+    for (const Vec3& p : body.model.vertices) lowest = std::min(lowest, p.z);
   }
-
-  /// Whether a point is well above the model's lowest point at the pose at which it is first
-  /// touched. number: the number that BodyNumbers gives that pose and body.
-  bool is_high(const Vec3& e, std::uint32_t number) const {
-    const std::uint32_t pose = numbers_.pose_of(number);
-    const Pose* of = bodies_[numbers_.body_of(number)].pose_at(pose);
-    return of != nullptr && pulled_back(*of, e).z - lowest_ > limit_;
-  }
-
-  /// The points of a cell that collide and are high.
-  CellRows high(std::uint32_t cell, const CellRows& colliding) const {
-    const auto q = store_.coordinates(cell);
-    return points_where(colliding, [&](std::uint32_t i, std::size_t row) {
-      const Vec3 e = position(store_.quantisation(), q[0][i], q[1][i], q[2][i]);
-      return is_high(e, colliding.poses[row]);
-    });
-  }
-
- private:
-  const StoreReader& store_;
-  std::vector<MovingBody> bodies_;
-  const BodyNumbers numbers_;
-  double lowest_ = 0, limit_ = 0;
-};
-
-}  // namespace
-
-Query query_of_ignored(const Query& query) {
-  Query out = query;
-  out.first_pose = true;
-  out.clearance = out.profile = 0;
-  out.depth = false;
-  return out;
+  return lowest + ground_height(store.metadata().unit);
 }
 
-SearchReport find_colliding_ignored(const StoreReader& store, const Query& query,
-                                    std::uint64_t memory_bytes, PageEngineKind& kind,
-                                    const ShardCells* only, AnswerRows& rows, Progress& progress) {
-  const Heights heights(store, query);
-  const CollectPage add = [&](std::span<const PlannedCell> cells, const PageResult& found) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      const std::uint32_t cell = cells[i].cell;
-      CellRows colliding = hit_rows(store, found, i);
-      const CellRows high = colliding.count() > 0 ? heights.high(cell, colliding) : CellRows();
-      colliding.poses.clear();
-      rows.add(cell, {{PointQuestion::kIgnored, colliding}, {PointQuestion::kIgnoredHigh, high}});
-    }
-  };
-  return run_visit(
-      store,
-      {.query = query,
-       .memory_bytes = memory_bytes,
-       .kind = kind,
-       .only = only,
-       .collect = add,
-       .answered = [&](std::uint32_t cell) { return rows.answered(cell, PointQuestion::kIgnored); },
-       .stage = "ignored",
-       .search = IgnoredPoints::Search::kIgnored},
-      progress);
+CellRows high_points(const StoreReader& store, const Query& query, double above, std::uint32_t cell,
+                     const CellRows& colliding) {
+  if (colliding.count() == 0) return {};
+  const std::vector<MovingBody> bodies = moving_bodies(query);
+  const BodyNumbers numbers(query);
+  const auto q = store.coordinates(cell);
+  return points_where(colliding, [&](std::uint32_t i, std::size_t row) {
+    const std::uint32_t number = colliding.poses[row];
+    const Pose* at = bodies[numbers.body_of(number)].pose_at(numbers.pose_of(number));
+    const Vec3 e = position(store.quantisation(), q[0][i], q[1][i], q[2][i]);
+    return at != nullptr && pulled_back(*at, e).z > above;
+  });
 }
 
 void warn_of_colliding_ignored(const Answer& answer, LengthUnit unit, MessageLog& log) {

@@ -7,12 +7,8 @@
 #include "clearway/ignored.hpp"
 #include "clearway/query.hpp"
 #include "core/messages/messages.hpp"
-#include "core/util/progress.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
-#include "search/kinds/page_engine_kind.hpp"
-#include "search/shard_cells.hpp"
-#include "search/visit.hpp"
 #include "stream/answer_rows.hpp"
 
 namespace clearway {
@@ -29,19 +25,13 @@ IgnoredPointCounts count_ignored(const StoreReader& store, const QueryParameters
 void warn_of_ignored(const StoreReader& store, const QueryParameters& query,
                      const IgnoredPointCounts& counts, MessageLog& log);
 
-// How many of the points that a query ignores would collide: found by a second search, of these
-// points alone.
+/// The height in the model's frame that no ground reaches: well above its lowest point.
+double above_ground(const StoreReader& store, const Query& query);
 
-/// The query of the second search: exact, with first poses and without distances.
-Query query_of_ignored(const Query& query);
-
-/// Searches the ignored points of all cells that `rows` does not know, or of those of `only`, and
-/// adds to `rows` which of them would collide, and which of these are first touched well above the
-/// model's lowest point. query: one made by query_of_ignored(). kind: the engine for that query.
-/// Throws as run_visit() does.
-SearchReport find_colliding_ignored(const StoreReader& store, const Query& query,
-                                    std::uint64_t memory_bytes, PageEngineKind& kind,
-                                    const ShardCells* only, AnswerRows& rows, Progress& progress);
+/// Those of the colliding points of a cell that are higher than `above` when they are first
+/// touched, in the frame of the body that touches them. colliding: with first poses.
+CellRows high_points(const StoreReader& store, const Query& query, double above, std::uint32_t cell,
+                     const CellRows& colliding);
 
 /// Warns where ignoring points may have made the answer: "ignored-collide" where more ignored
 /// points would collide than searched ones do, and "ignored-high" where some would collide well

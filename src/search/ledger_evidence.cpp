@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/cloud/scan_points.hpp"
 #include "core/cloud/small_cloud.hpp"
 #include "core/messages/messages.hpp"
 #include "core/query/body_numbers.hpp"
@@ -22,13 +23,15 @@
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "search/check_query.hpp"
-#include "search/kinds/body_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
+#include "search/kinds/visit_kind.hpp"
 #include "search/seen_space.hpp"
 #include "search/visit.hpp"
 
 namespace clearway {
 namespace {
+
+constexpr Pose kInPlace{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}};
 
 /// How far from a place the scan must have a point, metres.
 constexpr double kScannedWithin = 1;
@@ -46,9 +49,8 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
   options.device = Device::kCpu;
   options.threads = threads;
   options.memory_bytes = memory_bytes;
-  const std::unique_ptr<PageEngineKind> kind = query.bodies.empty()
-                                                   ? cpu_sweep_kind(cloud, query, options)
-                                                   : cpu_body_kind(cloud, query, options);
+  const std::unique_ptr<PageEngineKind> kind = visit_kind(
+      cloud, {{query}}, [&](const Query& one) { return cpu_sweep_kind(cloud, one, options); });
   const BodyNumbers numbers(query);
   // Every page writes the entries of its own points.
   std::vector<std::uint32_t> poses(cloud.point_count(), kNoPose);
@@ -325,32 +327,24 @@ void LedgerEvidence::look_at_store(std::span<const LedgerPlaces* const> rows,
   }
   if (open.empty()) return;
   const ResultHeader& header = found_.result.reader().header();
-  const bool ignores = header.ignores_points();
   const auto is_ignored = [&](const Vec3& p, std::uint8_t of_class) {
     return std::ranges::find(header.ignore_classes, of_class) != header.ignore_classes.end() ||
            std::ranges::any_of(header.ignore_boxes,
                                [&](const Box& box) { return box.contains(p); });
   };
-  for (std::uint32_t cell = 0; cell < store_->cells().size(); ++cell) {
-    const Box box = position_box(store_->quantisation(), store_->cells()[cell].box);
-    const auto meets = [&](const Row& row) { return row.box.meets(box); };
-    if (std::ranges::none_of(open, meets)) continue;
+  constexpr auto kAllBlocks = std::numeric_limits<std::uint32_t>::max();
+  const ScanPoints points(*store_, kAllBlocks);
+  for (Row& row : open) {
     throw_if_stopped(progress_);
-    const auto q = store_->peek(cell);
-    const bool has_classes = ignores && store_->has_classes();
-    const PackedChunk<std::uint8_t> classes =
-        has_classes ? store_->classes(cell) : PackedChunk<std::uint8_t>();
-    for (std::uint32_t i = 0; i < store_->cells()[cell].count; ++i) {
-      const Vec3 p = position(store_->quantisation(), q[0][i], q[1][i], q[2][i]);
-      const bool left_out = ignores && is_ignored(p, has_classes ? classes[i] : 0);
-      bool is_near = false;
-      for (Row& row : open) {
-        if (!row.box.contains(p)) continue;
-        is_near = true;
-        if (left_out && !row.has_ignored) row.has_ignored = row.gap.near(p).has_value();
+    const auto look = [&](const Vec3& p, std::uint32_t cell, std::uint32_t index) {
+      const bool knows_class = !header.ignore_classes.empty() && store_->has_classes();
+      if (!row.has_ignored && is_ignored(p, knows_class ? store_->class_of(cell, index) : 0)) {
+        row.has_ignored = row.gap.near(p).has_value();
       }
-      if (is_near) unscanned.meet(p);
-    }
+      unscanned.meet(p);
+      return true;
+    };
+    if (!store_->cells().empty()) points.visit(row.box, kInPlace, look);
   }
   std::vector<Vec3> far;
   std::vector<std::size_t> of_far(unscanned.places().size());

@@ -64,18 +64,21 @@ PageBudget::PageBudget(const PackedCloud& cloud, const Query& query, std::uint64
       only_(only),
       least_write_bytes_(write_bytes),
       ignored_(cloud, query, search),
-      masked_(query.ignores_points()),
+      masked_(query.ignores_points() || kind.needs().masked),
       trees_(kind.trees_of(kind.whose_trees(query))),
       building_bytes_(tree_building_bytes(query)),
       kept_bytes_(program_bytes(kind.needs().threads) + input_bytes(cloud, query) +
                   (write_bytes ? search_result_bytes(cloud, query) : 0)) {}
 
 void PageBudget::find() {
-  const std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
+  std::vector<PageEngineKind::IndexSize> sizes = kind_.index_sizes();
+  if (kind_.needs().may_be_divided) sizes.resize(std::min<std::size_t>(sizes.size(), 2));
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     if (fits_with(sizes[i], i + 1 == sizes.size())) return;
   }
-  if (smallest_bytes_) refuse_memory(*smallest_bytes_, memory_bytes_);
+  if (smallest_bytes_ || kind_.needs().may_be_divided) {
+    refuse_memory(smallest_bytes_.value_or(memory_bytes_), memory_bytes_);
+  }
   refuse_device_memory(smallest_device_bytes_, kind_.needs().most_device_bytes,
                        kind_.needs().short_device);
 }
@@ -129,6 +132,7 @@ bool PageBudget::fits_with(const PageEngineKind::IndexSize& size, bool any_layou
            most_poses);
       return true;
     }
+    if (kind_.needs().may_be_divided) break;
     if (!any_layout && !kind_.needs().on_gpu) break;  // a GPU gets fewer slots first
   }
   return false;

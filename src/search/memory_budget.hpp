@@ -33,7 +33,8 @@ class PageBudget {
   // The following are valid after find():
   std::vector<PlannedCell>& cells() { return cells_; }
   const SlotLayout& layout() const { return layout_; }
-  const IgnoredPoints& ignored() const { return ignored_; }
+  /// What the masks of pages leave out; null where pages have none.
+  const IgnoredPoints* masks() const { return masked_ ? &ignored_ : nullptr; }
   double index_seconds() const { return trees_.model_seconds + index_seconds_; }
   double plan_seconds() const { return trees_.motion_seconds + plan_seconds_; }
   std::uint64_t needed_bytes() const { return needed_bytes_; }

@@ -1,6 +1,7 @@
 #include "clearway/search.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -113,7 +114,6 @@ class Search {
     begin();
     AllFound found = find_all();
     found.end.engine_end.clear();
-    report_.ignored_looked_at = ignored_points_;
     const std::uint64_t rows_bytes = in_memory_.allocated_bytes();
     report_.needed_host_bytes += rows_bytes;
     const std::uint64_t write_bytes = found.end.write_bytes;
@@ -152,47 +152,55 @@ class Search {
     }
   }
 
-  /// What is searched after the colliding points: reads what was found, and adds to it.
-  using Pass = void (Search::*)(AllFound& found);
-
-  /// The further passes that the query asks for, in their order.
-  std::vector<Pass> further_passes() const {
-    std::vector<Pass> passes;
-    if (report_.ignored.points > 0) passes.push_back(&Search::find_colliding_ignored_points);
-    if (query_.first_pose) passes.push_back(&Search::find_last_poses);
-    if (header_.budget) passes.push_back(&Search::find_certain);
-    if (header_.budget) passes.push_back(&Search::find_near);
-    if (has_floor(query_)) passes.push_back(&Search::count_below_floor);
-    if (query_.seen) passes.push_back(&Search::find_unseen);
-    return passes;
+  /// The questions that visits answer, those about all points first. What is known without a search
+  /// is not among them.
+  std::vector<PointQuestion> visited_questions() const {
+    using enum PointQuestion;
+    std::vector<PointQuestion> questions{kHits};
+    if (report_.ignored.points > 0) questions.push_back(kIgnored);
+    if (header_.budget && near_radius() > query_.radius) questions.push_back(kNear);
+    if (has_floor(query_)) questions.push_back(kBelow);
+    // The last of a single pose is the first one.
+    if (query_.first_pose && query_.poses.size() > 1) questions.push_back(kLast);
+    if (header_.budget && certain_radius() < query_.radius &&
+        (certain_radius() > 0 || has_solids(query_))) {
+      questions.push_back(kCertain);
+    }
+    return questions;
   }
 
-  /// Searches all that the query asks for. Only the last pass ends the GPUs.
+  /// Searches all that the query asks for. Only the last visit ends the GPUs.
   AllFound find_all() {
-    const std::vector<Pass> passes = further_passes();
     const bool end_gpus = std::exchange(options_.end_gpus, false);
     choose_device();
     look_at_ground();
+    const std::vector<PointQuestion> questions = visited_questions();
     // A question with further searches has all the memory, because these need some of their own.
     if (query_.ignores_points() || query_.has_budget() || query_.seen || query_.depth ||
         has_floor(query_)) {
       take_memory(~0ULL);
     }
-    options_.end_gpus = end_gpus && passes.empty();
     AllFound found;
     if (query_.profile > 0) found.profile = ProfileSet(store_, query_.poses.size());
-    find_hits(found);
+    // A GPU that the user did not ask for is given up for the CPU only before the journal is open.
+    found.end = engines_.on(
+        report_.device,
+        [&](Device device) {
+          return visit_all(device, questions, end_gpus && !query_.seen, found.profile);
+        },
+        [&](const ResourceError&) {
+          if (journal_ != nullptr) throw;
+        });
+    if (file_) report_.resumed_cells = file_->journal.earlier_cells();
     found.rows = rows_;
-    for (const Pass& pass : passes) {
+    report_points();
+    options_.end_gpus = end_gpus;
+    if (query_.seen) {
       found.end.engine_end.clear();
-      options_.end_gpus = end_gpus && &pass == &passes.back();
-      (this->*pass)(found);
+      find_unseen(found);
     }
     if (query_.depth) find_depths_of(found);
-    if (query_.ignores_points()) {
-      report_.colliding_points = rows_->points(PointQuestion::kHits);
-      warn_of_colliding_ignored(report_, store_.metadata().unit, log_);
-    }
+    if (query_.ignores_points()) warn_of_colliding_ignored(report_, store_.metadata().unit, log_);
     return found;
   }
 
@@ -259,10 +267,13 @@ class Search {
     return model_hashes_[static_cast<std::size_t>(body - bodies.begin())];
   }
 
+  // Distances from the model, with an error budget: below which a point is certainly too close, and
+  // below which it may be.
+  double certain_radius() const { return header_.budget->certain_radius(query_.radius); }
+  double near_radius() const { return header_.budget->near_radius(query_.radius); }
+
   /// The distance from the model at which a place counts as swept.
-  double swept_radius() const {
-    return header_.budget ? header_.budget->near_radius(query_.radius) : query_.radius;
-  }
+  double swept_radius() const { return header_.budget ? near_radius() : query_.radius; }
 
   /// Notes where the errors are so large that no surface could be a certain conflict.
   void note_large_errors() {
@@ -310,89 +321,137 @@ class Search {
     report_.device = device;
   }
 
-  /// The first pass: finds the colliding points, with what is asked about each of them. A GPU that
-  /// the user did not ask for is given up for the CPU only before the journal is open.
-  void find_hits(AllFound& found) {
-    found.end = engines_.on(
-        report_.device, [&](Device device) { return find_on(device, found.profile); },
-        [&](const ResourceError&) {
-          if (journal_ != nullptr) throw;
-        });
-    ignored_points_ = found.end.ignored_points;
-    if (file_) report_.resumed_cells = file_->journal.earlier_cells();
-  }
-
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
-  VisitEnd find_on(Device device, ProfileSet& profile) {
+  /// Asks all questions in one visit where there is memory for it, and otherwise one after another.
+  /// Leaves in the end of the last visit the memory that is left to write with. GPUs are asked one
+  /// question after another.
+  VisitEnd visit_all(Device device, std::span<const PointQuestion> questions, bool end_gpus,
+                     ProfileSet& profile) {
+    if (device == Device::kCpu && options_.engine == Engine::kSweep && questions.size() > 1) {
+      try {
+        return visit(device, questions, false, profile);
+      } catch (const ResourceError& error) {
+        if (is_visiting_ || error.remedy() != Remedy::kMoreMemory) throw;
+      }
+    }
+    VisitEnd end{.write_bytes = ~std::uint64_t{0}};
+    for (; !questions.empty(); questions = questions.subspan(1)) {
+      end.engine_end.clear();
+      VisitEnd one = visit(device, questions.first(1), end_gpus && questions.size() == 1, profile);
+      end = {std::min(end.write_bytes, one.write_bytes), std::move(one.engine_end)};
+    }
+    return end;
+  }
+
+  /// Asks these questions of all cells that have not been asked all of them, page by page.
+  VisitEnd visit(Device device, std::span<const PointQuestion> questions, bool end_gpus,
+                 ProfileSet& profile) {
+    const PointQuestion first = questions.front();
+    const bool is_main = first == PointQuestion::kHits;
     report_.device = device;
     report_.device_name = DeviceChoice().name;
     // A journal that does not match is refused before anything is planned.
-    if (device == Device::kCpu || !fallback_allowed(options_)) open_rows(profile);
-    const std::unique_ptr<PageEngineKind> kind = engines_.kind(device, store_, query_, options_);
+    if (is_main && (device == Device::kCpu || !fallback_allowed(options_))) open_rows(profile);
+    is_visiting_ = false;
+    further_.clear();
+    std::vector<VisitQuestion> asked;
+    for (const PointQuestion question : questions) {
+      const Query& query =
+          question == PointQuestion::kHits ? query_ : further_.emplace_back(query_of(question));
+      asked.push_back({query, of_whom(question)});
+    }
+    visit_options_ = options_;
+    visit_options_.end_gpus = end_gpus;
+    // What the first visit took is enough, except for rounding in the plan.
+    if (!is_main) visit_options_.memory_bytes += options_.memory_bytes / 16;
+    if (!is_main) visit_options_.engine = Engine::kSweep;
+    const bool of_hits = !is_main && asked.front().of == VisitQuestion::Of::kHits;
+    const ShardCells with_hits = of_hits ? cells_with(PointQuestion::kHits) : ShardCells({});
+    if (of_hits && with_hits.empty()) return {.write_bytes = ~std::uint64_t{0}};
+    const auto search = questions.size() > 1               ? IgnoredPoints::Search::kBoth
+                        : first == PointQuestion::kIgnored ? IgnoredPoints::Search::kIgnored
+                                                           : IgnoredPoints::Search::kOthers;
+    const auto kind = engines_.kind(device, store_, asked, visit_options_);
+    SearchReport further_report;
+    const MessageCallback silent;
+    const MessageLog silent_log(silent, further_report.warnings);
+    SearchReport& report = is_main ? report_ : further_report;
     CollectPage keep;
-    return run_visit(
-        store_,
-        {.query = query_,
-         .memory_bytes = options_.memory_bytes,
-         .kind = *kind,
-         .only = only(),
-         .collect = [&](std::span<const PlannedCell> cells,
-                        const PageResult& page) { keep(cells, page); },
-         .answered =
-             [&](std::uint32_t cell) { return rows_->answered(cell, PointQuestion::kHits); },
-         .least_write_bytes = least_write_bytes(store_, query_),
-         .planned =
-             [&](std::uint64_t host, std::uint64_t on_device) {
-               take_memory(host + (file_ ? 0 : kMemoryStep));
-               engines_.take_device_memory(on_device, progress_);
-             },
-         .made =
-             [&] {
-               open_rows(profile);
-               keep = keep_answer(store_, *rows_, profile, journal_);
-             }},
-        progress_, report_, log_);
+    VisitEnd end = run_visit(store_,
+                             {.query = asked.front().query,
+                              .memory_bytes = visit_options_.memory_bytes,
+                              .kind = *kind,
+                              .only = of_hits ? &with_hits : only(),
+                              .collect = [&](std::span<const PlannedCell> cells,
+                                             const PageResult& page) { keep(cells, page); },
+                              .answered =
+                                  [&](std::uint32_t cell) {
+                                    return std::ranges::all_of(questions, [&](PointQuestion one) {
+                                      return rows_->answered(cell, one);
+                                    });
+                                  },
+                              .stage = is_main ? "search" : name_of(first),
+                              .search = search,
+                              .least_write_bytes = least_write_bytes(store_, asked.front().query),
+                              .planned =
+                                  [&](std::uint64_t host, std::uint64_t on_device) {
+                                    if (!is_main) return;
+                                    take_memory(host + (file_ ? 0 : kMemoryStep));
+                                    engines_.take_device_memory(on_device, progress_);
+                                  },
+                              .made =
+                                  [&] {
+                                    is_visiting_ = true;
+                                    if (is_main) open_rows(profile);
+                                    keep = keeper(questions, profile);
+                                  }},
+                             progress_, report, is_main ? log_ : silent_log);
+    if (!is_main) {
+      add_seconds(further_report.seconds, report_.seconds);
+      report_.needed_host_bytes =
+          std::max(report_.needed_host_bytes, further_report.needed_host_bytes);
+      report_.peak_device_bytes =
+          std::max(report_.peak_device_bytes, further_report.peak_device_bytes);
+    }
+    return end;
   }
 
-  /// The cells in which a question has found points.
-  ShardCells cells_with(PointQuestion question) const {
-    std::vector<bool> in(store_.cells().size());
-    for (const std::uint32_t cell : rows_->cells(question)) in[cell] = true;
-    return ShardCells(std::move(in));
+  static VisitQuestion::Of of_whom(PointQuestion question) {
+    using enum PointQuestion;
+    if (question == kIgnored) return VisitQuestion::Of::kIgnored;
+    return question == kLast || question == kCertain ? VisitQuestion::Of::kHits
+                                                     : VisitQuestion::Of::kSearched;
   }
 
-  /// Searches the ignored points alone. The numbers do not depend on the device.
-  void find_colliding_ignored_points(AllFound&) {
-    const Stopwatch clock;
-    further_.query = query_of_ignored(query_);
-    further_.options = options_;
-    further_.options.engine = Engine::kSweep;
-    const SearchReport taken = engines_.on(report_.device, [&](Device device) {
-      return find_colliding_ignored(
-          store_, further_.query, options_.memory_bytes,
-          *engines_.kind(device, store_, further_.query, further_.options), only(), *rows_,
-          progress_);
-    });
-    report_.needed_host_bytes = std::max(report_.needed_host_bytes, taken.needed_host_bytes);
-    report_.peak_device_bytes = std::max(report_.peak_device_bytes, taken.peak_device_bytes);
-    report_.ignored_colliding = rows_->points(PointQuestion::kIgnored);
-    report_.ignored_colliding_high = rows_->points(PointQuestion::kIgnoredHigh);
-    report_.seconds.ignored = clock.seconds();
+  /// The query that answers a question. Certain points are those that are closer than the certain
+  /// radius, which is below that of the query; where it is below 0, they are the points that are
+  /// deeper than it inside a solid.
+  Query query_of(PointQuestion question) const {
+    switch (question) {
+      case PointQuestion::kIgnored:
+        return plain_query(query_.radius, true);
+      case PointQuestion::kNear:
+        return plain_query(near_radius(), query_.first_pose);
+      case PointQuestion::kLast:
+        return backwards(query_);
+      case PointQuestion::kCertain: {
+        if (certain_radius() > 0) return plain_query(certain_radius(), false);
+        Query query = plain_query(query_.radius, false);
+        query.clearance = query_.radius;
+        raise_floors(query, query_.radius - certain_radius());
+        return query;
+      }
+      default: {
+        Query query = plain_query(query_.radius, false);
+        query.floor.reset();
+        for (Body& body : query.bodies) body.floor.reset();
+        return query;
+      }
+    }
   }
 
-  /// Searches the cells that have colliding points once more, with the poses in reverse order. The
-  /// last of a single pose is the first one.
-  void find_last_poses(AllFound& found) {
-    const ShardCells cells = cells_with(PointQuestion::kHits);
-    if (query_.poses.size() == 1 || cells.empty()) return;
-    search_further(found, backwards(query_), &cells, "last poses", PointQuestion::kLast,
-                   [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell, {{PointQuestion::kLast, page.hits}});
-                   });
-  }
-
-  /// The query without what a further search for points alone does not need. Floors keep their
+  /// The query without what a further question about points alone does not need. Floors keep their
   /// distance from the places that the radius reaches.
   Query plain_query(double radius, bool first_pose) const {
     Query query = query_;
@@ -406,95 +465,95 @@ class Search {
     return query;
   }
 
-  /// Finds the colliding points that by the error budget are certainly too close, and whether
-  /// enough of these hang together.
-  void find_certain(AllFound& found) {
-    find_certain_points(found);
+  /// What keeps the pages of a visit that asks these questions.
+  CollectPage keeper(std::span<const PointQuestion> questions, ProfileSet& profile) {
+    if (std::ranges::count(questions, PointQuestion::kIgnored) > 0) {
+      above_ground_ = above_ground(store_, query_);
+    }
+    if (questions.front() != PointQuestion::kHits) {
+      return [this, question = questions.front()](std::span<const PlannedCell> cells,
+                                                  const PageResult& page) {
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+          std::vector<AnswerRows::Part> parts;
+          add_rows(question, cells[i].cell, page, i,
+                   rows_->read(cells[i].cell, PointQuestion::kHits), parts);
+          rows_->add(cells[i].cell, parts);
+        }
+      };
+    }
+    return keep_answer(store_, *rows_, profile, journal_,
+                       [this, questions](std::uint32_t cell, const PageResult& page,
+                                         std::size_t index, std::vector<AnswerRows::Part>& parts) {
+                         const CellRows hits{.words = parts.front().rows.words};
+                         for (std::size_t i = 1; i < questions.size(); ++i) {
+                           add_rows(questions[i], cell, page.further[i - 1], index, hits, parts);
+                         }
+                         // Without errors in the way, all that collide are certain.
+                         if (header_.budget && !(certain_radius() < query_.radius)) {
+                           parts.push_back({PointQuestion::kCertain, hits});
+                         }
+                       });
+  }
+
+  /// Adds what a page says to a question about cell `index` of it. hits: the points of the cell
+  /// that collide.
+  void add_rows(PointQuestion question, std::uint32_t cell, const PageResult& page,
+                std::size_t index, const CellRows& hits,
+                std::vector<AnswerRows::Part>& parts) const {
+    CellRows found = hit_rows(store_, page, index);
+    if (question == PointQuestion::kNear || question == PointQuestion::kBelow) {
+      found = without(found, hits);
+    } else if (question == PointQuestion::kIgnored) {
+      parts.push_back(
+          {PointQuestion::kIgnoredHigh, high_points(store_, query_, above_ground_, cell, found)});
+      found.poses.clear();
+    } else if (question == PointQuestion::kCertain && !(certain_radius() > 0)) {
+      const double deeper = -(certain_radius() * certain_radius());
+      const CellRows clearances = clearance_rows(store_, page, index);
+      found = points_where(clearances, [&](std::uint32_t point, std::size_t row) {
+        return clearances.distances[row] < deeper && hits.contains(point);
+      });
+    }
+    parts.push_back({question, std::move(found)});
+  }
+
+  /// The cells in which a question has found points.
+  ShardCells cells_with(PointQuestion question) const {
+    std::vector<bool> in(store_.cells().size());
+    for (const std::uint32_t cell : rows_->cells(question)) in[cell] = true;
+    return ShardCells(std::move(in));
+  }
+
+  /// Reports how many points the questions have found. Below the floor those count that are neither
+  /// colliding nor near.
+  void report_points() {
+    using enum PointQuestion;
+    if (query_.ignores_points()) report_.colliding_points = rows_->points(kHits);
+    report_.ignored_colliding = rows_->points(kIgnored);
+    report_.ignored_colliding_high = rows_->points(kIgnoredHigh);
+    if (header_.budget) report_.certain = certain_group();
+    if (!has_floor(query_)) return;
+    std::uint64_t below = header_.budget ? 0 : rows_->points(kBelow);
+    if (header_.budget) {
+      for (const std::uint32_t cell : rows_->cells(kBelow)) {
+        below += without(rows_->read(cell, kBelow), rows_->read(cell, kNear)).count();
+      }
+    }
+    report_.floor_colliding = below;
+  }
+
+  /// Whether enough of the certain points hang together.
+  CertainPoints certain_group() {
+    CertainGroup group(store_.quantisation(), header_.gap, progress_);
     ThreadLimit(options_.threads).run([&] {
-      CertainGroup group(store_.quantisation(), header_.gap, progress_);
       for (const std::uint32_t cell : rows_->cells(PointQuestion::kCertain)) {
         const auto q = store_.coordinates(cell);
         rows_->read(cell, PointQuestion::kCertain).for_each([&](std::uint32_t i, std::size_t) {
           group.add({q[0][i], q[1][i], q[2][i]});
         });
       }
-      report_.certain = group.found();
     });
-  }
-
-  /// Finds the colliding points that are closer than the certain radius, which is at most that of
-  /// the query. Below 0 these are the points that are deeper than it inside a solid, and for a
-  /// model without solids there is none.
-  void find_certain_points(AllFound& found) {
-    const double radius = header_.budget->certain_radius(query_.radius);
-    const ShardCells cells = cells_with(PointQuestion::kHits);
-    if (cells.empty()) return;
-    if (!(radius < query_.radius)) {
-      for (const std::uint32_t cell : rows_->cells(PointQuestion::kHits)) {
-        if (rows_->answered(cell, PointQuestion::kCertain)) continue;
-        const CellRows all{.words = rows_->read(cell, PointQuestion::kHits).words};
-        rows_->add(cell, {{PointQuestion::kCertain, all}});
-      }
-    } else if (radius > 0) {
-      search_further(found, plain_query(radius, false), &cells, "certain points",
-                     PointQuestion::kCertain, [this](std::uint32_t cell, const FoundInCell& page) {
-                       rows_->add(cell, {{PointQuestion::kCertain, page.hits}});
-                     });
-    } else if (has_solids(query_)) {
-      Query signed_query = plain_query(query_.radius, false);
-      signed_query.clearance = query_.radius;
-      raise_floors(signed_query, query_.radius - radius);
-      const double deeper = -(radius * radius);
-      search_further(found, std::move(signed_query), &cells, "certain points",
-                     PointQuestion::kCertain,
-                     [this, deeper](std::uint32_t cell, const FoundInCell& page) {
-                       const CellRows hits = rows_->read(cell, PointQuestion::kHits);
-                       const CellRows certain =
-                           points_where(page.clearances, [&](std::uint32_t point, std::size_t row) {
-                             return page.clearances.distances[row] < deeper && hits.contains(point);
-                           });
-                       rows_->add(cell, {{PointQuestion::kCertain, certain}});
-                     });
-    }
-  }
-
-  /// Finds the points that do not collide but may be too close by the error budget.
-  void find_near(AllFound& found) {
-    const double radius = header_.budget->near_radius(query_.radius);
-    if (!(radius > query_.radius)) return;
-    search_further(found, plain_query(radius, query_.first_pose), only(), "near points",
-                   PointQuestion::kNear, [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell,
-                                {{PointQuestion::kNear,
-                                  without(page.hits, rows_->read(cell, PointQuestion::kHits))}});
-                   });
-  }
-
-  /// Counts the points that a search of the set without floors finds, and that are neither
-  /// colliding nor near. Its seconds are reported apart from those of the search.
-  void count_below_floor(AllFound& found) {
-    const Stopwatch clock;
-    const SearchSeconds before = report_.seconds;
-    Query query = plain_query(query_.radius, false);
-    query.floor.reset();
-    for (Body& body : query.bodies) body.floor.reset();
-    search_further(found, std::move(query), only(), "below the floor", PointQuestion::kBelow,
-                   [this](std::uint32_t cell, const FoundInCell& page) {
-                     rows_->add(cell,
-                                {{PointQuestion::kBelow,
-                                  without(page.hits, rows_->read(cell, PointQuestion::kHits))}});
-                   });
-    std::uint64_t below = header_.budget ? 0 : rows_->points(PointQuestion::kBelow);
-    if (header_.budget) {
-      for (const std::uint32_t cell : rows_->cells(PointQuestion::kBelow)) {
-        below += without(rows_->read(cell, PointQuestion::kBelow),
-                         rows_->read(cell, PointQuestion::kNear))
-                     .count();
-      }
-    }
-    report_.floor_colliding = below;
-    report_.seconds = before;
-    report_.seconds.below = clock.seconds();
+    return group.found();
   }
 
   /// Finds the free point that is nearest to each colliding one, on the CPU, after all searches for
@@ -520,9 +579,9 @@ class Search {
   /// follows the beams of its own cells; the groups of what none of them saw are made by the merge.
   void find_unseen(AllFound& found) {
     cells_read_ = store_.cells_touched();
-    further_.options = options_;
-    further_.options.engine = Engine::kSweep;
-    further_.options.end_gpus = false;  // following the beams does
+    visit_options_ = options_;
+    visit_options_.engine = Engine::kSweep;
+    visit_options_.end_gpus = false;  // following the beams does
     SeenSpace space = engines_.on(report_.device, [&](Device device) {
       return seen_space_on(device, found.end.write_bytes);
     });
@@ -551,7 +610,7 @@ class Search {
                    .only = only(),
                    .kind =
                        [&](const PackedCloud& cloud, const Query& query) {
-                         return engines_.kind(device, cloud, query, further_.options);
+                         return engines_.kind(device, cloud, {{query}}, visit_options_);
                        },
                    .follow_on_gpus = {}};
     if (device == Device::kCuda) {
@@ -572,48 +631,6 @@ class Search {
                               " or more beside the mapped store; larger cubes need less",
                           Remedy::kMoreMemory);
     }
-  }
-
-  /// What a further search found in one cell of a page.
-  struct FoundInCell {
-    CellRows hits, clearances;
-  };
-  using KeepCell = std::function<void(std::uint32_t cell, const FoundInCell&)>;
-
-  /// Searches all cells, or those of `cells`, for another query after the first search, as stage
-  /// `name`; cells for which `question` is answered are left out. keep: called for each cell.
-  /// Leaves in `found` the end of the engines and the memory that is left to write with.
-  void search_further(AllFound& found, Query query, const ShardCells* cells, const char* name,
-                      PointQuestion question, const KeepCell& keep) {
-    further_.query = std::move(query);
-    further_.options = options_;
-    // What the first search took is enough, except for rounding in the plan.
-    further_.options.memory_bytes += options_.memory_bytes / 16;
-    SearchReport report;
-    const MessageCallback silent;
-    const MessageLog log(silent, report.warnings);
-    const CollectPage collect = [&](std::span<const PlannedCell> of, const PageResult& page) {
-      for (std::size_t i = 0; i < of.size(); ++i) {
-        keep(of[i].cell, {hit_rows(store_, page, i), clearance_rows(store_, page, i)});
-      }
-    };
-    VisitEnd end = engines_.on(report_.device, [&](Device device) {
-      const auto kind = engines_.kind(device, store_, further_.query, further_.options);
-      return run_visit(
-          store_,
-          {.query = further_.query,
-           .memory_bytes = further_.options.memory_bytes,
-           .kind = *kind,
-           .only = cells,
-           .collect = collect,
-           .answered = [&](std::uint32_t cell) { return rows_->answered(cell, question); },
-           .stage = name,
-           .least_write_bytes = least_write_bytes(store_, further_.query)},
-          progress_, report, log);
-    });
-    found.end.engine_end = std::move(end.engine_end);
-    found.end.write_bytes = std::min(found.end.write_bytes, end.write_bytes);
-    add_seconds(report.seconds, report_.seconds);
   }
 
   static void add_seconds(const SearchSeconds& more, SearchSeconds& seconds) {
@@ -666,7 +683,6 @@ class Search {
     }
     file_->journal.remove_after_publication();
     report_.cells_read = cells_read_.value_or(store_.cells_touched());
-    report_.ignored_looked_at = ignored_points_;
     report_.bytes_read = since(bytes_before_, store_.bytes_read());
     report_.seconds.write = write.seconds();
   }
@@ -710,12 +726,10 @@ class Search {
   std::optional<std::uint64_t> cells_read_;
   /// What earlier searches of the same store have read
   const BytesRead bytes_before_ = store_.bytes_read();
-  /// The query and the options of a further pass, which outlive its engines.
-  struct Further {
-    Query query;
-    SearchOptions options;
-  } further_;
-  std::uint64_t ignored_points_ = 0;  ///< in the cells that the first pass searched
+  std::deque<Query> further_;    ///< those of a visit besides the query, which outlive its engines
+  SearchOptions visit_options_;  ///< those of a visit
+  bool is_visiting_ = false;     ///< whether a visit has begun to search
+  double above_ground_ = 0;      ///< above_ground(), once ignored points are searched
   SearchJournal* journal_ = nullptr;  ///< null before it is open, and for an answer in memory
   RowsInMemory in_memory_{[this](std::uint64_t bytes) { take_for_rows(bytes); }};
   std::optional<AnswerRows> rows_in_memory_;

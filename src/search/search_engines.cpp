@@ -5,7 +5,6 @@
 
 #include "core/util/format.hpp"
 #include "search/device_estimate.hpp"
-#include "search/kinds/body_kind.hpp"
 #include "search/kinds/cuda_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
 #include "search/kinds/kdtree_kind.hpp"
@@ -45,18 +44,17 @@ bool SearchEngines::gpu_pays() {
 }
 
 std::unique_ptr<PageEngineKind> SearchEngines::kind([[maybe_unused]] Device device,
-                                                    const PackedCloud& cloud, const Query& query,
+                                                    const PackedCloud& cloud,
+                                                    std::vector<VisitQuestion> questions,
                                                     const SearchOptions& options) {
-  std::unique_ptr<PageEngineKind> kind = [&]() -> std::unique_ptr<PageEngineKind> {
+  const MakeKind make = [&](const Query& query) -> std::unique_ptr<PageEngineKind> {
 #ifdef CLEARWAY_CUDA
     if (device == Device::kCuda) {
       const OpenGpus open = [this] { return open_gpus(); };
       KeptOnGpus* const kept = session_.is_session() ? &session_.kept_on_gpus() : nullptr;
-      if (!query.bodies.empty()) return cuda_body_kind(cloud, query, options, open, kept);
       return cuda_kind(cloud, query, options, open, kept);
     }
 #endif
-    if (!query.bodies.empty()) return cpu_body_kind(cloud, query, options);
     switch (options.engine) {
       case Engine::kGrid:
         return std::make_unique<CpuGridKind>(cloud, query, options);
@@ -66,7 +64,8 @@ std::unique_ptr<PageEngineKind> SearchEngines::kind([[maybe_unused]] Device devi
         break;
     }
     return cpu_sweep_kind(cloud, query, options);
-  }();
+  };
+  std::unique_ptr<PageEngineKind> kind = visit_kind(cloud, std::move(questions), make);
   kind->keep_models_in(session_.models(), model_hashes_);
   return kind;
 }

@@ -16,7 +16,7 @@
 #include "core/seen/brick_map.hpp"
 #include "core/util/progress.hpp"
 #include "search/devices.hpp"
-#include "search/kinds/page_engine_kind.hpp"
+#include "search/kinds/visit_kind.hpp"
 #include "search/session_state.hpp"
 
 namespace clearway {
@@ -64,9 +64,10 @@ class SearchEngines {
     return work(Device::kCpu);
   }
 
-  /// Makes the engine kind for a device. cloud, query and options outlive the kind. For use in
-  /// on().
-  std::unique_ptr<PageEngineKind> kind(Device device, const PackedCloud& cloud, const Query& query,
+  /// Makes the engine kind of a visit for a device. cloud, queries and options outlive the kind.
+  /// For use in on().
+  std::unique_ptr<PageEngineKind> kind(Device device, const PackedCloud& cloud,
+                                       std::vector<VisitQuestion> questions,
                                        const SearchOptions& options);
 
   /// Takes memory of each GPU in use, which the questions of a session share. Does nothing on the

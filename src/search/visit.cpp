@@ -44,29 +44,24 @@ int useful_threads(const PackedCloud& cloud, const Query& query, std::span<const
                                                     static_cast<std::uint64_t>(needs.threads)));
 }
 
-/// Runs the planned cells that are not answered yet. Returns how many points of them were not
-/// searched.
-std::uint64_t run_planned(const PackedCloud& cloud, const Visit& visit, PageBudget& budget,
-                          std::span<PageEngine* const> engines, Progress& progress,
-                          SearchReport& report) {
+/// Runs the planned cells that are not answered yet.
+void run_planned(const PackedCloud& cloud, const Visit& visit, PageBudget& budget,
+                 std::span<PageEngine* const> engines, Progress& progress, SearchReport& report) {
   std::vector<PlannedCell>& cells = budget.cells();
   if (visit.answered) {
     std::erase_if(cells, [&](const PlannedCell& cell) { return visit.answered(cell.cell); });
   }
-  const std::vector<PlannedPage> pages =
-      paginate(cloud, cells, budget.layout().page_bytes, budget.layout().cells,
-               visit.query.ignores_points());
+  const std::vector<PlannedPage> pages = paginate(cloud, cells, budget.layout().page_bytes,
+                                                  budget.layout().cells, budget.masks() != nullptr);
   report.pages = pages.size();
   for (const PageEngine* engine : engines) report.slots += engine->slots();
   StageTimes stages;
-  const std::uint64_t ignored =
-      run_pages(cloud, cells, pages, engines,
-                {.stage = visit.stage,
-                 .ignored = budget.ignored(),
-                 .threads = useful_threads(cloud, visit.query, cells, visit.kind.needs())},
-                visit.collect, progress, stages);
+  run_pages(cloud, cells, pages, engines,
+            {.stage = visit.stage,
+             .masks = budget.masks(),
+             .threads = useful_threads(cloud, visit.query, cells, visit.kind.needs())},
+            visit.collect, progress, stages);
   report_stages(stages, report.seconds);
-  return ignored;
 }
 
 }  // namespace
@@ -88,8 +83,8 @@ VisitEnd run_visit(const PackedCloud& cloud, const Visit& visit, Progress& progr
   if (visit.made) visit.made();
   std::vector<PageEngine*> lanes;
   for (const auto& engine : engines) lanes.push_back(engine.get());
-  VisitEnd end{.ignored_points = run_planned(cloud, visit, budget, lanes, progress, report),
-               .write_bytes = budget.write_bytes()};
+  run_planned(cloud, visit, budget, lanes, progress, report);
+  VisitEnd end{.write_bytes = budget.write_bytes()};
   kind.report_search({lanes.data(), lanes.size()}, report, log);
   end.engine_end = kind.end(std::move(engines));
   // The engines are taken down while the result is written, unless memory is too scarce for both.

@@ -37,7 +37,6 @@ struct Visit {
 
 /// What a visit leaves when it is done.
 struct VisitEnd {
-  std::uint64_t ignored_points = 0;  ///< number of ignored points in the cells that were visited
   /// The bytes of memory that are left to write with while engines are still being taken down
   std::uint64_t write_bytes = 0;
   EngineEnd engine_end = {};

@@ -204,7 +204,7 @@ AnswerRows::AnswerRows(const PackedCloud& cloud, const Query& query, RowStorage&
   });
 }
 
-void AnswerRows::add(std::uint32_t cell, std::initializer_list<Part> parts) {
+void AnswerRows::add(std::uint32_t cell, const std::vector<Part>& parts) {
   JournalRecord record;
   std::uint64_t bytes = 1 + 2 * JournalRecord::kMostCountBytes;
   for (const Part& part : parts) bytes += 1 + bytes_of(part.rows);

@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -170,14 +169,14 @@ class AnswerRows {
   /// A question and what was found.
   struct Part {
     PointQuestion question;
-    const CellRows& rows;
+    CellRows rows;
   };
 
   /// All outlive it.
   AnswerRows(const PackedCloud& cloud, const Query& query, RowStorage& storage);
 
   /// Keeps what was found in a cell in one record. A cell without rows is finished too.
-  void add(std::uint32_t cell, std::initializer_list<Part> parts);
+  void add(std::uint32_t cell, const std::vector<Part>& parts);
   /// Notes a record that the storage has at `place`, and checks all of it. Throws InputError where
   /// it is not of this cloud and query.
   void note(JournalPayload payload, std::uint64_t place);

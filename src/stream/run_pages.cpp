@@ -62,15 +62,9 @@ class Section {
 }  // namespace
 
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                     std::span<std::byte> page) {
-  std::uint64_t none = 0;
-  return stage_page(cloud, cells, page, IgnoredPoints(cloud, {}), none);
-}
-
-PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                     std::span<std::byte> page, const IgnoredPoints& ignored,
-                     std::uint64_t& ignored_points, const KeptPayload& kept) {
-  PageShape shape = page_shape(cloud, cells, ignored.any());
+                     std::span<std::byte> page, const IgnoredPoints* masks_of,
+                     const KeptPayload& kept) {
+  PageShape shape = page_shape(cloud, cells, masks_of != nullptr);
   std::vector<std::optional<CellPayload>> elsewhere;
   for (const PlannedCell& planned : cells) {
     elsewhere.push_back(kept ? kept(planned.cell) : std::nullopt);
@@ -106,8 +100,8 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
     blocks.append(cloud.blocks().subspan(std::size_t{planned.cell} * shape.blocks_per_cell,
                                          shape.blocks_per_cell));
     if (!shape.masked) continue;
-    ignored_points += ignored.mask(
-        planned.cell, searched, [&] { return packed ? *packed : cloud.coordinates(planned.cell); });
+    masks_of->mask(planned.cell, searched,
+                   [&] { return packed ? *packed : cloud.coordinates(planned.cell); });
     masks.append(std::span<const std::uint64_t>(searched));
   }
   return shape;
@@ -181,14 +175,13 @@ class FreeSlots {
 /// slot for it.
 struct Pages {
   const PackedCloud& cloud;
-  const IgnoredPoints& ignored;
+  const IgnoredPoints* masks;
   const std::span<const PlannedCell> cells;
   const std::span<const PlannedPage> pages;
   Progress& progress;
   const CollectPage& keep;
   std::vector<PageTimes> times = std::vector<PageTimes>(pages.size());
   std::atomic<std::size_t> next = 0;
-  std::atomic<std::uint64_t> ignored_points = 0;
 
   std::span<const PlannedCell> cells_of(std::size_t page) const { return pages[page].of(cells); }
 };
@@ -258,11 +251,9 @@ class Lane {
   void start(PageInFlight page) {
     Interval& time = pages_.times[page.page].read;
     time.begin = Clock::now();
-    std::uint64_t ignored = 0;
-    const PageShape shape = stage_page(
-        pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot), pages_.ignored, ignored,
-        [&](std::uint32_t cell) { return engine_.kept(page.slot, cell); });
-    pages_.ignored_points += ignored;
+    const PageShape shape =
+        stage_page(pages_.cloud, pages_.cells_of(page.page), engine_.page(page.slot), pages_.masks,
+                   [&](std::uint32_t cell) { return engine_.kept(page.slot, cell); });
     time.end = Clock::now();
     engine_.start(page.slot, shape);
     started_[page.slot] = true;
@@ -279,6 +270,7 @@ class Lane {
     times.collect.begin = Clock::now();
     pages_.keep(cells, found);
     times.collect.end = Clock::now();
+    engine_.release(slot);
     free_slots_.give_back(slot);
     pages_.progress.advance(points_of(pages_.cloud, cells));
   }
@@ -298,19 +290,18 @@ void run_lanes(Pages& pages, std::span<PageEngine* const> engines) {
 
 }  // namespace
 
-std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                        std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                        const PageRun& run, const CollectPage& collect, Progress& progress,
-                        StageTimes& times) {
+void run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+               std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+               const PageRun& run, const CollectPage& collect, Progress& progress,
+               StageTimes& times) {
   const ThreadLimit limit(run.threads == 0 ? tbb::this_task_arena::max_concurrency() : run.threads);
   progress.begin(run.stage, points_of(cloud, cells), "points");
   const Clock::time_point begin = Clock::now();
-  Pages shared{cloud, run.ignored, cells, pages, progress, collect};
+  Pages shared{cloud, run.masks, cells, pages, progress, collect};
   limit.run([&] { run_lanes(shared, engines); });
   times = stage_times(shared.times);
   times.total = std::chrono::duration<double>(Clock::now() - begin).count();
   progress.end();
-  return shared.ignored_points;
 }
 
 std::uint64_t run_pages_bytes(std::size_t pages) {

@@ -29,18 +29,13 @@ void offer_profile(const PackedCloud& cloud, std::span<const PlannedCell> cells,
 /// Where the coordinates of a cell are kept outside of a page, as PageEngine::kept() says it.
 using KeptPayload = std::function<std::optional<CellPayload>(std::uint32_t cell)>;
 
-/// Fills `page` with the cells from the cloud: headers, motion nodes, block boxes, masks if points
-/// are ignored, and packed coordinates, which are read straight into it unless they are kept
-/// elsewhere. page: aligned to kPageAlignment, and at least as large as the page of these cells.
-/// ignored_points: increased by the number of ignored points in these cells. Thread safe. Throws
-/// what reading the cells throws.
+/// Fills `page` with the cells from the cloud: headers, motion nodes, block boxes, masks, and
+/// packed coordinates, which are read straight into it unless they are kept elsewhere. page:
+/// aligned to kPageAlignment, and at least as large as the page of these cells. masks: those that
+/// are ignored; null for a page without masks. Thread safe. Throws what reading the cells throws.
 PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                     std::span<std::byte> page, const IgnoredPoints& ignored,
-                     std::uint64_t& ignored_points, const KeptPayload& kept = nullptr);
-
-/// Fills `page` with the cells if no point is ignored.
-PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                     std::span<std::byte> page);
+                     std::span<std::byte> page, const IgnoredPoints* masks = nullptr,
+                     const KeptPayload& kept = nullptr);
 
 /// The times at which the stages of one page ran.
 struct PageTimes {
@@ -69,8 +64,9 @@ using CollectPage = std::function<void(std::span<const PlannedCell>, const PageR
 /// What run_pages() has to know besides the pages and engines.
 struct PageRun {
   const char* stage = "search";  ///< name of the stage for those who watch the progress
-  const IgnoredPoints& ignored;  ///< decides which points of the pages are searched
-  int threads = 0;               ///< 0: all cores
+  /// Decides which points of the pages are searched; null: all are, and pages have no masks
+  const IgnoredPoints* masks = nullptr;
+  int threads = 0;  ///< 0: all cores
 };
 
 /// Runs pages through engines. Pages are staged in their order into whichever slot of an engine is
@@ -78,12 +74,11 @@ struct PageRun {
 /// waits for a device, or one for each slot if its pages are not alike. Progress counts points. An
 /// exception of any stage ends the run: no further page is started, those under way are finished,
 /// then it is rethrown; the same happens, with Interrupted, when the progress asks to stop. The
-/// pages must fit the slots of every engine. Returns how many points of the pages were not
-/// searched.
-std::uint64_t run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
-                        std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
-                        const PageRun& run, const CollectPage& collect, Progress& progress,
-                        StageTimes& times);
+/// pages must fit the slots of every engine.
+void run_pages(const PackedCloud& cloud, std::span<const PlannedCell> cells,
+               std::span<const PlannedPage> pages, std::span<PageEngine* const> engines,
+               const PageRun& run, const CollectPage& collect, Progress& progress,
+               StageTimes& times);
 
 /// Memory that run_pages() takes in addition to the engine, bytes.
 std::uint64_t run_pages_bytes(std::size_t pages);

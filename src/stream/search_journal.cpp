@@ -124,20 +124,18 @@ std::uint64_t SearchJournal::most_bytes(const PackedCloud& cloud, const Query& q
 }
 
 CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& profile,
-                        SearchJournal* journal) {
-  return [&cloud, &rows, &profile, journal](std::span<const PlannedCell> cells,
-                                            const PageResult& found) {
+                        SearchJournal* journal, FurtherRows further) {
+  return [&cloud, &rows, &profile, journal, further = std::move(further)](
+             std::span<const PlannedCell> cells, const PageResult& found) {
     offer_profile(cloud, cells, found.profile, profile);
     if (journal != nullptr) journal->append_profile(cells, found.profile, profile);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      const CellRows hits = hit_rows(cloud, found, i);
-      if (!rows.asks(PointQuestion::kClearances)) {
-        rows.add(cells[i].cell, {{PointQuestion::kHits, hits}});
-        continue;
+      std::vector<AnswerRows::Part> parts{{PointQuestion::kHits, hit_rows(cloud, found, i)}};
+      if (rows.asks(PointQuestion::kClearances)) {
+        parts.push_back({PointQuestion::kClearances, clearance_rows(cloud, found, i)});
       }
-      const CellRows clearances = clearance_rows(cloud, found, i);
-      rows.add(cells[i].cell,
-               {{PointQuestion::kHits, hits}, {PointQuestion::kClearances, clearances}});
+      if (further) further(cells[i].cell, found, i, parts);
+      rows.add(cells[i].cell, parts);
     }
   };
 }

@@ -72,10 +72,14 @@ class SearchJournal final : public RowStorage {
   AnswerRows rows_;
 };
 
+/// Further rows of cell `index` of a page, which are kept in the record of its hits.
+using FurtherRows = std::function<void(std::uint32_t cell, const PageResult& page,
+                                       std::size_t index, std::vector<AnswerRows::Part>& parts)>;
+
 /// Keeps the answer of pages: in `profile` the nearest points, then in `rows` what was found in
-/// each cell. journal: gets the nearest points, too; null where there is none. All outlive the
-/// function.
+/// each cell. journal: gets the nearest points, too; null where there is none. further: adds to the
+/// rows of a cell; null where there is nothing to add. All outlive the function.
 CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& profile,
-                        SearchJournal* journal);
+                        SearchJournal* journal, FurtherRows further = nullptr);
 
 }  // namespace clearway

@@ -73,7 +73,7 @@ void run_quietly(const PackedCloud& cloud, const std::vector<PlannedCell>& cells
   StageTimes times;
   run_pages(
       cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()),
-      {&lane, 1}, {.stage = "pages", .ignored = ignored, .threads = 2},
+      {&lane, 1}, {.stage = "pages", .masks = ignored.any() ? &ignored : nullptr, .threads = 2},
       [](std::span<const PlannedCell>, const PageResult&) {}, silent, times);
 }
 

@@ -128,11 +128,30 @@ TEST_CASE("a run with all questions, stopped again and again, has the bytes of o
   CHECK(whole.colliding_points > 20);
   CHECK(whole.floor_colliding.value() > 5);
   CHECK(whole.ignored_colliding > 5);
+  std::uint64_t least = 0;
+  try {
+    search(store, query, scan.folder / "none.h5",
+           {.device = Device::kCpu, .threads = 1, .memory_bytes = 1});
+  } catch (const ResourceError& error) {
+    least = static_cast<std::uint64_t>(error.amount());
+  }
+  // In the least memory the questions are asked one after another, and otherwise in one visit.
   // Where one cell ends by a stop, those that other threads search end unfinished, and are searched
   // again.
-  for (const int threads : {1, 4}) {
-    CAPTURE(threads);
-    const auto output = scan.folder / (std::to_string(threads) + ".h5");
+  const std::vector<std::string> one_visit{"search", "depth"};
+  const std::vector<std::string> visits{"search", "ignored", "near", "below",
+                                        "last",   "certain", "depth"};
+  const std::uint64_t enough = SearchOptions().memory_bytes;
+  struct Row {
+    int threads;
+    std::uint64_t memory_bytes;
+    std::vector<std::string> stages;
+  };
+  for (const auto& [threads, memory_bytes, stages] :
+       {Row{1, enough, one_visit}, Row{4, enough, one_visit}, Row{1, least, visits}}) {
+    CAPTURE(threads, memory_bytes);
+    const auto output =
+        scan.folder / (std::to_string(threads) + std::to_string(memory_bytes) + ".h5");
     std::map<std::string, int> stops;  // in each stage
     std::map<std::string, std::uint64_t> searched;
     std::optional<SearchReport> last;
@@ -142,7 +161,10 @@ TEST_CASE("a run with all questions, stopped again and again, has the bytes of o
       int pages = 0;
       std::string stage;
       std::uint64_t before = 0;
-      SearchOptions options{.device = Device::kCpu, .threads = threads, .resume = runs > 0};
+      SearchOptions options{.device = Device::kCpu,
+                            .threads = threads,
+                            .memory_bytes = memory_bytes,
+                            .resume = runs > 0};
       options.stop = &stop;
       options.progress = [&](const ProgressUpdate& now) {
         if (stage != now.stage) before = 0;
@@ -160,8 +182,7 @@ TEST_CASE("a run with all questions, stopped again and again, has the bytes of o
       }
       REQUIRE(++runs < 500);
     }
-    for (const char* stage : {"search", "ignored", "last poses", "certain points", "near points",
-                              "below the floor", "depth"}) {
+    for (const std::string& stage : stages) {
       CAPTURE(stage);
       CHECK(stops[stage] > 0);
     }

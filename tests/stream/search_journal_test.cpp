@@ -80,8 +80,7 @@ class JournalledScene {
     PageEngine* const engines[] = {&engine};
     StageTimes times;
     const auto pages = paginate(scene.cloud, cells, layout.page_bytes, 1);
-    const IgnoredPoints none(scene.cloud, scene.query);
-    run_pages(scene.cloud, cells, pages, engines, {.ignored = none, .threads = 2},
+    run_pages(scene.cloud, cells, pages, engines, {.threads = 2},
               keep_answer(scene.cloud, journal.rows(), profile, &journal), progress, times);
   }
 

@@ -153,15 +153,22 @@ struct ProgramReport {
 };
 
 nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramReport& program) {
-  return {{"total", program.total_seconds}, {"inputs", program.inputs_seconds},
-          {"context", search.context},      {"context_wait", search.context_wait},
-          {"ignored", search.ignored},      {"plan", search.plan},
-          {"field", search.field},          {"engine", search.engine},
-          {"search", search.search},        {"read", search.read},
-          {"upload", search.upload},        {"compute", search.compute},
-          {"collect", search.collect},      {"below", search.below},
-          {"swept", search.swept},          {"beams", search.beams},
-          {"depth", search.depth},          {"write", search.write},
+  return {{"total", program.total_seconds},
+          {"inputs", program.inputs_seconds},
+          {"context", search.context},
+          {"context_wait", search.context_wait},
+          {"plan", search.plan},
+          {"field", search.field},
+          {"engine", search.engine},
+          {"search", search.search},
+          {"read", search.read},
+          {"upload", search.upload},
+          {"compute", search.compute},
+          {"collect", search.collect},
+          {"swept", search.swept},
+          {"beams", search.beams},
+          {"depth", search.depth},
+          {"write", search.write},
           {"end_wait", search.end_wait}};
 }
 
@@ -218,7 +225,6 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   const Side side = least_side(report, query);
   out["least_side"] = nullptr;
   if (side != Side::kUnknown) out["least_side"] = name_of(side);
-  out["ignored"]["looked_at"] = known(searched, report.ignored_looked_at);
   out["shard_share"] = nullptr;
   if (report.shard_share) out["shard_share"] = *report.shard_share;
   out["engine"] = known(searched, name_of(report.engine));
@@ -258,12 +264,7 @@ void log_report(const SearchReport& report, const RunOptions& options, const std
   const bool doubtful = !report.warnings.empty();
   spdlog::info("{}: {}{}", output, doubtful ? "" : found + "; ", how);
   if (options.query.ignores_points()) {
-    spdlog::info("{} in the whole environment, {} of them in the cells that were searched",
-                 ignored_text(options.query, report.ignored),
-                 format_count(report.ignored_looked_at));
-  }
-  if (report.seconds.below > 0) {
-    spdlog::info("{:.2f} s more to count what is below the floor", report.seconds.below);
+    spdlog::info("{} in the whole environment", ignored_text(options.query, report.ignored));
   }
   if (options.query.clearance > 0) {
     spdlog::info("{} within the clearance of {} {}",

@@ -6,61 +6,38 @@
 #include <span>
 #include <vector>
 
+#include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/sweep_bounds.hpp"
 
 namespace clearway {
 namespace {
 
-/// The inverse of a pose, from the scan's frame into the model's. The pose may be rigid or scale
-/// uniformly.
-class Inverse {
- public:
-  explicit Inverse(const Pose& pose) : pose_(pose) {
-    const double* r = pose.rotation;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double squared = squared_length(r[k], r[3 + k], r[6 + k]);
-      for (std::size_t j = 0; j < 3; ++j) rows_[3 * k + j] = r[3 * j + k] / squared;
-    }
+/// The box in the model's frame around a box of the scan.
+Box seen_from(const PullBack& frame, const Box& box) {
+  const Vec3 centre = frame.apply(box.centre()), size = box.size();
+  Box out{centre, centre};
+  for (int k = 0; k < 3; ++k) {
+    const Vec3& row = frame.rows[k];
+    const double half =
+        (std::abs(row.x) * size.x + std::abs(row.y) * size.y + std::abs(row.z) * size.z) /
+        std::abs(2 * frame.determinant);
+    out.lo[k] -= half;
+    out.hi[k] += half;
   }
-
-  Vec3 operator()(const Vec3& p) const {
-    const Vec3 d = difference(p, pose_.position());
-    const auto& r = rows_;
-    return {r[0] * d.x + r[1] * d.y + r[2] * d.z, r[3] * d.x + r[4] * d.y + r[5] * d.z,
-            r[6] * d.x + r[7] * d.y + r[8] * d.z};
-  }
-
-  /// The box in the model's frame around a box of the scan.
-  Box operator()(const Box& box) const {
-    const Vec3 centre = (*this)(box.centre());
-    Box out{centre, centre};
-    for (int k = 0; k < 3; ++k) {
-      const double* row = rows_.data() + std::ptrdiff_t{3} * k;
-      double half = 0;
-      for (int j = 0; j < 3; ++j) half += std::abs(row[j]) * (box.hi[j] - box.lo[j]) / 2;
-      out.lo[k] -= half;
-      out.hi[k] += half;
-    }
-    return out;
-  }
-
- private:
-  const Pose& pose_;
-  std::array<double, 9> rows_{};
-};
+  return out;
+}
 
 class Visit {
  public:
-  Visit(const PackedCloud& cloud, const Box& region, const Pose& pose,
-        const std::function<bool(const Vec3&)>& look,
+  Visit(const PackedCloud& cloud, const Box& region, const Pose& pose, const ScanPoints::Look& look,
         std::unordered_map<std::uint32_t, ScanPoints::Chunks>& chunks, std::uint32_t most_blocks)
       : cloud_(cloud),
         chunks_(chunks),
         most_blocks_(most_blocks),
         region_(region),
         place_(moved(region, pose)),
-        inverse_(pose),
+        frame_(pose),
         look_(look) {}
 
   bool run() {
@@ -82,7 +59,7 @@ class Visit {
 
  private:
   bool may_matter(const Box& box) const {
-    return box.distance(place_) == 0 && inverse_(box).distance(region_) == 0;
+    return box.distance(place_) == 0 && seen_from(frame_, box).distance(region_) == 0;
   }
 
   /// The packed chunks of a cell, kept because reading them checks all bytes of the cell.
@@ -107,19 +84,20 @@ class Visit {
         return;
       }
       if (chunks == nullptr) chunks = &chunks_of(cell);
-      look_at(*chunks, first, std::min<std::uint32_t>(kBlockPoints, here.count - first));
+      look_at(cell, *chunks, first, std::min<std::uint32_t>(kBlockPoints, here.count - first));
     }
   }
 
-  void look_at(const ScanPoints::Chunks& chunks, std::uint32_t first, std::uint32_t count) {
+  void look_at(std::uint32_t cell, const ScanPoints::Chunks& chunks, std::uint32_t first,
+               std::uint32_t count) {
     std::array<std::array<std::int32_t, kBlockPoints>, 3> quanta{};
     for (std::size_t k = 0; k < 3; ++k) {
       chunks[k].decode(first, std::span(quanta[k]).first(count));
     }
     for (std::uint32_t i = 0; i < count && !stopped_; ++i) {
       const Vec3 p =
-          inverse_(position(cloud_.quantisation(), quanta[0][i], quanta[1][i], quanta[2][i]));
-      if (region_.contains(p)) stopped_ = !look_(p);
+          frame_.apply(position(cloud_.quantisation(), quanta[0][i], quanta[1][i], quanta[2][i]));
+      if (region_.contains(p)) stopped_ = !look_(p, cell, first + i);
     }
   }
 
@@ -128,22 +106,21 @@ class Visit {
   std::uint32_t most_blocks_;
   const Box& region_;
   Box place_;
-  Inverse inverse_;
-  const std::function<bool(const Vec3&)>& look_;
+  const PullBack frame_;
+  const ScanPoints::Look& look_;
   std::uint64_t blocks_ = 0;
   bool stopped_ = false;
 };
 
 }  // namespace
 
-bool ScanPoints::visit(const Box& region, const Pose& pose,
-                       const std::function<bool(const Vec3&)>& look) const {
+bool ScanPoints::visit(const Box& region, const Pose& pose, const Look& look) const {
   return Visit(cloud_, region, pose, look, chunks_, most_blocks_).run();
 }
 
 bool ScanPoints::has(const Box& region, const Pose& pose, std::uint64_t least) const {
   std::uint64_t found = 0;
-  const bool all = visit(region, pose, [&](const Vec3&) { return ++found < least; });
+  const bool all = visit(region, pose, [&](auto...) { return ++found < least; });
   return !all || found >= least;
 }
 

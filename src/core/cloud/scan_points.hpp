@@ -47,6 +47,9 @@ class StepRange {
 class ScanPoints {
  public:
   using Chunks = std::array<PackedChunk<std::int32_t>, 3>;
+  /// Takes a point by its place in the frame, its cell and its index there, and returns whether to
+  /// go on. The place is that of PullBack::apply().
+  using Look = std::function<bool(const Vec3& place, std::uint32_t cell, std::uint32_t index)>;
 
   /// How many blocks are read for one box if nothing else is said: a quarter of a million points.
   static constexpr std::uint32_t kMostBlocks = 4096;
@@ -58,8 +61,7 @@ class ScanPoints {
   /// Hands every point in a box of the model's frame, in that frame, to `look` until that returns
   /// false; the box includes its faces. Returns false where there are more blocks than are read for
   /// one box. Throws InputError where a cell is damaged.
-  bool visit(const Box& region, const Pose& pose,
-             const std::function<bool(const Vec3&)>& look) const;
+  bool visit(const Box& region, const Pose& pose, const Look& look) const;
 
   /// Whether at least `least` points are in the box; also true where too many blocks lie there.
   bool has(const Box& region, const Pose& pose, std::uint64_t least) const;

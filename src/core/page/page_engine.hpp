@@ -37,6 +37,8 @@ struct PageResult {
   /// page, and none is tied.
   std::span<const ProfileFact> profile{};
   Interval upload{}, compute{};  ///< times during which the page was sent, and searched
+  /// What further questions of the same visit found, in their order
+  std::span<const PageResult> further{};
 };
 
 /// The values of cell `index` of a page that has `size` values for each cell; empty if it has none.
@@ -65,7 +67,7 @@ class PageEngine {
   virtual std::span<std::byte> page(std::uint32_t slot) = 0;
 
   /// Where the engine finds the coordinates of a cell outside of the slot's page, which then need
-  /// not be copied into it; nothing where it does not. Such coordinates stay there until finish().
+  /// not be copied into it; nothing where it does not. Such coordinates stay there until release().
   virtual std::optional<CellPayload> kept(std::uint32_t /*slot*/, std::uint32_t /*cell*/) {
     return std::nullopt;
   }
@@ -89,6 +91,10 @@ class PageEngine {
   /// Waits for the answer, which stays valid until the slot is started again. Throws the search's
   /// error; the slot is then no longer in flight.
   virtual PageResult finish(std::uint32_t slot) = 0;
+
+  /// Lets go of the coordinates that kept() has found for the slot. Called once what was found in
+  /// its page has been taken.
+  virtual void release(std::uint32_t /*slot*/) {}
 };
 
 }  // namespace clearway

@@ -27,8 +27,9 @@ void sort_ignored(QueryParameters& query);
 /// Knows which points of a cloud a query leaves out of the search (docs/design/ignored.md).
 class IgnoredPoints {
  public:
-  /// The points to be searched: all but the ignored ones, or only the ignored ones.
-  enum class Search { kOthers, kIgnored };
+  /// The points to be searched: all but the ignored ones, or only the ignored ones. kBoth: masks
+  /// are those of the others, but also cells that have none of these are visited.
+  enum class Search { kOthers, kIgnored, kBoth };
 
   /// cloud: must outlive this object; without classes, all its points have class 0.
   IgnoredPoints(const PackedCloud& cloud, const QueryParameters& query,
@@ -39,7 +40,7 @@ class IgnoredPoints {
 
   /// Whether none of the cell's points is to be searched, as far as boxes alone can show.
   bool skips(std::uint32_t cell) const {
-    return search_ == Search::kOthers ? holds(cell) : !touches(cell);
+    return search_ == Search::kOthers ? holds(cell) : search_ == Search::kIgnored && !touches(cell);
   }
 
   /// Whether a point of the cell may be ignored.

@@ -102,7 +102,7 @@ void look_for_ground(const PackedCloud& cloud, LengthUnit unit, double metre,
     std::uint64_t tested = 0;
     bool found = false;
     try {
-      points.visit(under, pose, [&](const Vec3& x) {
+      points.visit(under, pose, [&](const Vec3& x, auto...) {
         if (is_near(index, x, query.radius)) {
           found = true;
           highest = std::max(highest, x.z);

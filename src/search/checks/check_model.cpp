@@ -267,7 +267,7 @@ struct PointsInBox {
     const Model& model = question.query.model;
     const SolidParts* const solids = model.is_solid() ? &question.looks.solids(model) : nullptr;
     std::size_t looked_at = 0;
-    const auto look = [&](const Vec3& p) {
+    const auto look = [&](const Vec3& p, auto...) {
       if (solids == nullptr || !solids->ref().contains(p)) {
         all.add(p);
         if (is_enclosed(question, p)) enclosed.add(p);

@@ -286,11 +286,10 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
     return std::make_unique<CudaBeamEngine>(gpu, beams, cloud, layout);
   });
   const std::vector<PageEngine*> lanes = lanes_of(engines);
-  const IgnoredPoints none(cloud, {});
   StageTimes times;
   run_pages(
       cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells), lanes,
-      {.stage = "beams", .ignored = none, .threads = needs.threads},
+      {.stage = "beams", .threads = needs.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
   BeamCounts counts;
   std::vector<std::vector<std::uint64_t>> words;
@@ -334,7 +333,7 @@ SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
   StageTimes times;
   run_pages(
       cloud, cells, paginate(cloud, cells, layout.page_bytes, layout.cells, ignored.any()), lanes,
-      {.stage = "section", .ignored = ignored, .threads = needs.threads},
+      {.stage = "section", .masks = ignored.any() ? &ignored : nullptr, .threads = needs.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
   std::vector<std::uint32_t> of_device;
   for (const PageEngine* lane : lanes) {

@@ -49,6 +49,10 @@ struct PageEngineNeeds {
   int waiting_threads = 0;    ///< how many of the threads wait for a device
   std::uint32_t devices = 1;  ///< the number of engines, one for each device
   bool on_gpu = false;
+  bool masked = false;  ///< whether pages have masks also where no point is ignored
+  /// Whether there are several questions, which are asked one by one where memory is short: then
+  /// only the two best indexes and the best layout will do.
+  bool may_be_divided = false;
   /// Bytes that may be taken on each GPU, once devices are resolved.
   std::uint64_t most_device_bytes = 0;
   /// Once devices are resolved, the name that refuse_device_memory() takes.

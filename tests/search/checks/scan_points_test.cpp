@@ -48,7 +48,7 @@ TEST_CASE("the points in a turned box are all found, in its frame") {
           if (std::abs(along) <= 4.03 && std::abs(across) <= 1.03) ++expected;
         }
       }
-      CHECK(points.visit(box, pose, [&](const Vec3& p) {
+      CHECK(points.visit(box, pose, [&](const Vec3& p, auto...) {
         CHECK(p.z == Approx(-1.5));
         ++found;
         return true;
@@ -64,14 +64,13 @@ TEST_CASE("a visit stops when it is told to, and passes over no damaged cell") {
   const MemoryCloud cloud = ground_cloud();
   const Box all{{0, 0, -1}, {40, 40, 1}};
   int seen = 0;
-  CHECK(ScanPoints(cloud).visit(all, turned(0, 1, {0, 0, 0}),
-                                [&](const Vec3&) { return ++seen < 7; }));
+  CHECK(ScanPoints(cloud).visit(all, turned(0, 1, {0, 0, 0}), [&](auto...) { return ++seen < 7; }));
   check_equal(seen, 7);
   for (std::uint32_t cell = 0; cell < cloud.cells().size(); ++cell) {
     MemoryCloud damaged = ground_cloud();
     damaged.damage(cell);
     CHECK_THROWS_AS(
-        ScanPoints(damaged).visit(all, turned(0, 1, {0, 0, 0}), [](const Vec3&) { return true; }),
+        ScanPoints(damaged).visit(all, turned(0, 1, {0, 0, 0}), [](auto...) { return true; }),
         InputError);
   }
 }

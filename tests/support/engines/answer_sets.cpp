@@ -55,7 +55,8 @@ SearchResult run_pages(const PackedCloud& cloud, std::span<const PlannedCell> ce
   SearchResult answer = empty_result(cloud, query);
   const IgnoredPoints ignored(cloud, query);
   run_pages(
-      cloud, cells, pages, engines, {.ignored = ignored, .threads = threads},
+      cloud, cells, pages, engines,
+      {.masks = ignored.any() ? &ignored : nullptr, .threads = threads},
       [&](std::span<const PlannedCell> of, const PageResult& found) {
         add_page(cloud, of, found, answer);
       },

@@ -32,8 +32,8 @@ void block_on_host(const PackedCloud& cloud, const IgnoredPoints& ignored,
   const std::vector<PlannedCell> cells = section_cells(cloud, section);
   for (const PlannedPage& planned : paginate(cloud, cells, 1 << 20, kPageCells, ignored.any())) {
     PageMemory memory(planned.shape.bytes());
-    std::uint64_t left_out = 0;
-    const PageShape shape = stage_page(cloud, planned.of(cells), memory.bytes(), ignored, left_out);
+    const PageShape shape =
+        stage_page(cloud, planned.of(cells), memory.bytes(), ignored.any() ? &ignored : nullptr);
     const SectionPage page{section, {memory.bytes().data(), shape}, cloud.quantisation()};
     for (std::uint32_t block = 0; block < page.block_count(); ++block) {
       SectionBlock<HostWarp>(page, block).search();

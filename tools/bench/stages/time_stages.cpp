@@ -127,9 +127,8 @@ Json time_stages(const StageOptions& options) {
   NoProgress progress;
   StageTimes times;
   PageEngine* const engines[] = {&engine};
-  const IgnoredPoints none(store, query);
   run_pages(
-      store, cells, pages, engines, {.ignored = none, .threads = options.threads},
+      store, cells, pages, engines, {.threads = options.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
   Json out{{"pages", pages.size()},
            {"cells_read", store.cells_touched()},

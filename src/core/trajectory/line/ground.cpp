@@ -42,7 +42,7 @@ class Strips {
       strip.lo.z = all.lo.z;
       strip.hi.z = all.hi.z;
     }
-    points_.visit(strip, pose, [&](const Vec3& point) {
+    points_.visit(strip, pose, [&](const Vec3& point, auto...) {
       heights.push_back((point.z + base) / metre_);
       return true;
     });

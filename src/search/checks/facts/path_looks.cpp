@@ -147,7 +147,7 @@ class Looking {
     if (inside.hi.z <= inside.lo.z) return std::nullopt;
     if (points_.has(under, pose, surely_below(under, pose))) return std::nullopt;
     std::vector<double> heights;
-    points_.visit(inside, pose, [&](const Vec3& p) {
+    points_.visit(inside, pose, [&](const Vec3& p, auto...) {
       heights.push_back(p.z);
       return true;
     });
