@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,21 +32,18 @@
 
 namespace clearway {
 
-void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
-                      std::uint32_t number, SectionCells& cells, const std::uint32_t* without) {
+void add_cells_of_bin(const SectionLattice& lattice, std::span<const std::uint32_t> firsts,
+                      std::uint32_t number, SectionCells& cells,
+                      std::span<const std::uint32_t> without) {
   const auto j0 = static_cast<std::int32_t>(lattice.j_from);
   const auto k0 = static_cast<std::int32_t>(lattice.k_from);
-  for (std::uint32_t row = 0; row < lattice.rows; ++row) {
-    const std::uint64_t first = std::uint64_t{row} * lattice.columns;
-    const std::uint32_t* const of_row = firsts + first;
-    for (std::uint32_t column = 0; column < lattice.columns; ++column) {
-      if (of_row[column] == kNotBlocked) continue;
-      if (without != nullptr && of_row[column] == without[first + column]) continue;
-      cells.bin.push_back(number);
-      cells.j.push_back(j0 + static_cast<std::int32_t>(column));
-      cells.k.push_back(k0 + static_cast<std::int32_t>(row));
-      cells.first_pose.push_back(of_row[column]);
-    }
+  for (std::size_t cell = 0; cell < firsts.size(); ++cell) {
+    if (firsts[cell] == kNotBlocked) continue;
+    if (!without.empty() && firsts[cell] == without[cell]) continue;
+    cells.bin.push_back(number);
+    cells.j.push_back(j0 + static_cast<std::int32_t>(cell % lattice.columns));
+    cells.k.push_back(k0 + static_cast<std::int32_t>(cell / lattice.columns));
+    cells.first_pose.push_back(firsts[cell]);
   }
 }
 
@@ -292,12 +291,10 @@ class Finder {
     if (options_.strict) refuse_warnings(data_.warnings);
     unknown_.emplace();
     for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
-      const std::uint32_t *const blocked = maps_->firsts(bin), *const taken = taken_->firsts(bin);
-      std::uint64_t count = 0;
-      for (std::uint64_t cell = 0; cell < lattice_.cells(); ++cell) {
-        if (taken[cell] != blocked[cell]) ++count;
-      }
-      unknown_->counts.push_back(count);
+      const std::span blocked = maps_->firsts(bin);
+      unknown_->counts.push_back(
+          std::transform_reduce(blocked.begin(), blocked.end(), taken_->firsts(bin).begin(),
+                                std::uint64_t{0}, std::plus<>(), std::not_equal_to<>()));
     }
     unknown_->add = [this](std::size_t bin, SectionCells& cells) {
       cells.reserve(unknown_->counts[bin]);
@@ -324,19 +321,13 @@ class Finder {
 
   /// Counts the blocked cells of each bin, and those of the whole path.
   void count_blocked() {
-    std::vector<bool> anywhere(lattice_.cells());
+    const auto blocked_in = [](std::uint32_t first) { return first != kNotBlocked; };
     for (std::size_t bin = 0; bin < data_.bins.size(); ++bin) {
-      const std::uint32_t* const firsts = maps_->firsts(bin);
-      std::uint64_t count = 0;
-      for (std::size_t cell = 0; cell < anywhere.size(); ++cell) {
-        if (firsts[cell] == kNotBlocked) continue;
-        ++count;
-        if (anywhere[cell]) continue;
-        anywhere[cell] = true;
-        ++report_.blocked;
-      }
-      blocked_.counts.push_back(count);
+      blocked_.counts.push_back(
+          static_cast<std::uint64_t>(std::ranges::count_if(maps_->firsts(bin), blocked_in)));
     }
+    report_.blocked = static_cast<std::uint64_t>(
+        std::ranges::count(maps_->blocked_anywhere(data_.bins.size()), true));
     blocked_.add = [this](std::size_t bin, SectionCells& cells) {
       cells.reserve(blocked_.counts[bin]);
       add_cells_of_bin(lattice_, maps_->firsts(bin), data_.bins[bin], cells);

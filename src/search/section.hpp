@@ -23,9 +23,9 @@ QueryParameters ignored_by(const SectionParameters& asked);
 void check_path_of(const SectionData& section, std::span<const Pose> path);
 
 /// Adds the blocked cells of a bin, ascending by k and j. without: the firsts of another map, whose
-/// cells with the same first pose are left out; null for none.
-void add_cells_of_bin(const SectionLattice& lattice, const std::uint32_t* firsts,
+/// cells with the same first pose are left out; empty for none.
+void add_cells_of_bin(const SectionLattice& lattice, std::span<const std::uint32_t> firsts,
                       std::uint32_t number, SectionCells& cells,
-                      const std::uint32_t* without = nullptr);
+                      std::span<const std::uint32_t> without = {});
 
 }  // namespace clearway

@@ -10,30 +10,13 @@
 #include "search/section.hpp"
 
 namespace clearway {
-namespace {
-
-/// For each cell of the lattice, whether it is blocked in any bin.
-std::vector<bool> blocked_anywhere(const SectionMaps& maps, std::size_t bins,
-                                   const SectionLattice& lattice) {
-  std::vector<bool> anywhere(lattice.cells());
-  for (std::size_t bin = 0; bin < bins; ++bin) {
-    const std::uint32_t* const firsts = maps.firsts(bin);
-    for (std::size_t cell = 0; cell < anywhere.size(); ++cell) {
-      if (firsts[cell] != kNotBlocked) anywhere[cell] = true;
-    }
-  }
-  return anywhere;
-}
-
-}  // namespace
-
 CellsOfIgnored cells_of_ignored(const SectionMaps& maps, const SectionMaps& ignored,
                                 const SectionLattice& lattice, std::span<const SectionBin> bins,
                                 std::span<const std::uint32_t> path_pose, double high_from) {
-  const std::vector<bool> others = blocked_anywhere(maps, bins.size(), lattice);
+  const std::vector<bool> others = maps.blocked_anywhere(bins.size());
   std::vector<bool> high(lattice.cells());
   CellsOfIgnored out;
-  const std::vector<bool> all = blocked_anywhere(ignored, bins.size(), lattice);
+  const std::vector<bool> all = ignored.blocked_anywhere(bins.size());
   for (std::size_t cell = 0; cell < all.size(); ++cell) {
     if (!all[cell] || others[cell]) continue;
     ++out.blocked;
@@ -43,7 +26,7 @@ CellsOfIgnored cells_of_ignored(const SectionMaps& maps, const SectionMaps& igno
     high[cell] = true;
   }
   for (std::size_t bin = 0; bin < bins.size() && out.high > 0; ++bin) {
-    const std::uint32_t* const firsts = ignored.firsts(bin);
+    const std::span firsts = ignored.firsts(bin);
     bool has_high = false;
     for (std::size_t cell = 0; cell < high.size() && !has_high; ++cell) {
       has_high = high[cell] && firsts[cell] != kNotBlocked;

@@ -155,6 +155,6 @@ TEST_CASE("a rectangle of cells is blocked as its cells are one by one") {
     }
     CHECK(whole[0].is_blocked_by(rect, pose));
     const std::uint64_t entries = SectionMapShape(lattice).entries;
-    CHECK(std::equal(whole.firsts(0), whole.firsts(0) + entries, single.firsts(0)));
+    CHECK(std::ranges::equal(whole.entries().first(entries), single.entries().first(entries)));
   }
 }

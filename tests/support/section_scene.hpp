@@ -205,7 +205,7 @@ struct SectionOfScene {
   Blocked blocked() const {
     Blocked out;
     for (std::size_t bin = 0; bin < bins.size(); ++bin) {
-      const std::uint32_t* const firsts = maps.firsts(bin);
+      const std::span firsts = maps.firsts(bin);
       for (std::uint32_t row = 0; row < lattice.rows; ++row) {
         for (std::uint32_t column = 0; column < lattice.columns; ++column) {
           const std::uint32_t pose = firsts[std::uint64_t{row} * lattice.columns + column];

@@ -179,9 +179,12 @@ class SectionMaps {
   std::span<const std::uint32_t> entries() const { return entries_; }
 
   /// The first poses of a bin's cells, row by row.
-  const std::uint32_t* firsts(std::uint64_t bin) const {
-    return entries_.data() + bin * shape_.entries;
+  std::span<const std::uint32_t> firsts(std::uint64_t bin) const {
+    return entries().subspan(bin * shape_.entries,
+                             std::uint64_t{shape_.columns[0]} * shape_.rows[0]);
   }
+  /// For each cell, whether it is blocked in any of the first bins.
+  std::vector<bool> blocked_anywhere(std::uint64_t bins) const;
 
   /// Bytes that the map of one bin takes.
   static std::uint64_t bytes_of_bin(const SectionLattice& lattice) {

@@ -82,6 +82,17 @@ SectionMapShape::SectionMapShape(const SectionLattice& lattice) {
   }
 }
 
+std::vector<bool> SectionMaps::blocked_anywhere(std::uint64_t bins) const {
+  std::vector<bool> anywhere(std::uint64_t{shape_.columns[0]} * shape_.rows[0]);
+  for (std::uint64_t bin = 0; bin < bins; ++bin) {
+    const std::span of_bin = firsts(bin);
+    for (std::size_t cell = 0; cell < of_bin.size(); ++cell) {
+      if (of_bin[cell] != kNotBlocked) anywhere[cell] = true;
+    }
+  }
+  return anywhere;
+}
+
 SectionBinNumbers bins_of_poses(std::span<const double> chainage, std::size_t first,
                                 std::size_t last, const SectionParameters& parameters) {
   double from = chainage[first], to = chainage[last];

@@ -232,9 +232,9 @@ TEST_CASE("a pyramid over first poses says whether all cells of a rectangle are 
       std::uint32_t& first = firsts[row * lattice.columns + column];
       first = std::min(first, pose);
     }
-    CHECK(std::equal(firsts.begin(), firsts.end(), maps.firsts(1)));
-    CHECK(std::all_of(maps.firsts(0), maps.firsts(0) + maps.shape().entries,
-                      [](std::uint32_t entry) { return entry == kNotBlocked; }));
+    CHECK(std::ranges::equal(firsts, maps.firsts(1)));
+    CHECK(std::ranges::all_of(maps.entries().first(maps.shape().entries),
+                              [](std::uint32_t entry) { return entry == kNotBlocked; }));
     for (int question = 0; question < 300; ++question) {
       const std::uint32_t side = 1 + number(question % 3 == 0 ? 90 : 5);
       SectionRect rect{number(lattice.columns), 0, number(lattice.rows), 0};
