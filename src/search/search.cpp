@@ -409,8 +409,6 @@ class Search {
                              progress_, report, is_main ? log_ : silent_log);
     if (!is_main) {
       add_seconds(further_report.seconds, report_.seconds);
-      report_.needed_host_bytes =
-          std::max(report_.needed_host_bytes, further_report.needed_host_bytes);
       report_.peak_device_bytes =
           std::max(report_.peak_device_bytes, further_report.peak_device_bytes);
     }

@@ -32,6 +32,8 @@
 #include "search/check_query.hpp"
 #include "search/checks/question.hpp"
 #include "search/visit.hpp"
+#include "stream/answer_rows.hpp"
+#include "stream/search_journal.hpp"
 
 namespace clearway {
 namespace {
@@ -63,75 +65,57 @@ Query query_of_cubes(const Query& query, double radius) {
       Remedy::kMoreMemory, static_cast<double>(needed));
 }
 
-/// The swept cubes of a brick.
-struct SweptBrick {
-  std::array<std::uint64_t, kBrickWords> words{};
-  std::vector<std::uint32_t>
-      first_poses;  ///< those of the swept cubes, in the order of their numbers
-
-  std::uint64_t count() const { return first_poses.size(); }
-};
-
-/// The swept cubes of each brick of a cloud.
+/// The cubes of a cloud that the model sweeps: its points that collide, with their first poses.
 struct SweptCubes {
-  std::vector<SweptBrick> bricks;
-  std::atomic<std::uint64_t> cubes = 0;
+  /// most_bytes: bytes that the swept cubes may take beside the search. All outlive it.
+  SweptCubes(const BrickCloud& bricks, const Query& query, std::uint64_t most_bytes)
+      : cloud(bricks),
+        numbers(query),
+        fixed_bytes(AnswerRows::bytes(bricks, query)),
+        storage([=, this](std::uint64_t bytes) {
+          bytes += fixed_bytes;
+          if (bytes > most_bytes) refuse_more(kMemoryParts * bytes, most_bytes);
+        }),
+        rows(bricks, query, storage) {}
 
-  std::uint64_t bytes() const {
-    return bricks.size() * sizeof(SweptBrick) + cubes * sizeof(std::uint32_t);
+  std::uint64_t count() const { return rows.points(PointQuestion::kHits); }
+  std::uint64_t bytes() const { return fixed_bytes + storage.allocated_bytes(); }
+  /// The cells of the bricks that have any, ascending.
+  std::vector<std::uint32_t> cells() const { return rows.cells(PointQuestion::kHits); }
+
+  /// Calls visit(cube, first pose) for each swept cube of a brick.
+  template <typename Visit>
+  void for_each(std::uint32_t cell, Visit visit) const {
+    const CellRows hits = rows.read(cell, PointQuestion::kHits);
+    hits.for_each([&](std::uint32_t point, std::size_t row) {
+      visit(cloud.bricks()[cell].cube(point), numbers.pose_of(hits.poses[row]));
+    });
   }
-};
 
-/// Searches the middles of a cloud's cubes. most_bytes: bytes that the swept cubes may take beside
-/// the search, which takes up to memory_bytes.
-void sweep(const BrickCloud& cloud, const Query& query, std::uint64_t memory_bytes,
-           std::uint64_t most_bytes, PageEngineKind& kind, Progress& progress, SweptCubes& swept,
-           SearchReport& taken) {
-  const BodyNumbers numbers(query);
-  swept.bricks.resize(cloud.bricks().size());
-  const CollectPage collect = [&](std::span<const PlannedCell> cells, const PageResult& found) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      CellRows hits = hit_rows(cloud, found, i);
-      SweptBrick& brick = swept.bricks[cells[i].cell];
-      swept.cubes += hits.poses.size();
-      std::ranges::copy(hits.words, brick.words.begin());
-      for (std::uint32_t& pose : hits.poses) pose = numbers.pose_of(pose);
-      brick.first_poses = std::move(hits.poses);
-    }
-    if (swept.bytes() > most_bytes) refuse_more(kMemoryParts * swept.bytes(), most_bytes);
-  };
-  taken = run_visit(cloud,
-                    {.query = query,
-                     .memory_bytes = memory_bytes,
-                     .kind = kind,
-                     .collect = collect,
-                     .stage = "swept space"},
-                    progress);
-}
+  const BrickCloud& cloud;
+  const BodyNumbers numbers;
+  const std::uint64_t fixed_bytes;
+  RowsInMemory storage;
+  AnswerRows rows;
+};
 
 /// How much of the swept cubes lies in each cell of the cross-sections.
-SweptCells cross_sections_of(const BrickCloud& cloud, const SweptCubes& swept,
-                             const CubeLattice& lattice, const Quantisation& quantisation,
-                             double side, const Query& query, int threads, Progress& progress) {
+SweptCells cross_sections_of(const SweptCubes& swept, const CubeLattice& lattice,
+                             const Quantisation& quantisation, double side, const Query& query,
+                             int threads, Progress& progress) {
   CrossSections all(side);
   tbb::spin_mutex mutex;
+  const std::vector<std::uint32_t> cells = swept.cells();
   in_threads(threads, [&] {
     constexpr std::size_t kBricksAtOnce = 256;
     using Range = tbb::blocked_range<std::size_t>;
-    for_each_parallel(Range(0, swept.bricks.size(), kBricksAtOnce), [&](const Range& cells) {
+    for_each_parallel(Range(0, cells.size(), kBricksAtOnce), [&](const Range& part) {
       throw_if_stopped(progress);
       CrossSections some(side);
-      for (std::size_t cell = cells.begin(); cell < cells.end(); ++cell) {
-        const SweptBrick& brick = swept.bricks[cell];
-        std::size_t next = 0;
-        for (std::uint32_t word = 0; word < kBrickWords; ++word) {
-          for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
-            const auto bit = static_cast<std::uint32_t>(std::countr_zero(open));
-            const Cube cube = cloud.bricks()[cell].cube(64 * word + bit);
-            some.add(pulled_back(query.poses[brick.first_poses[next]],
-                                 middle_of(lattice, quantisation, cube)));
-          }
-        }
+      for (std::size_t i = part.begin(); i < part.end(); ++i) {
+        swept.for_each(cells[i], [&](const Cube& cube, std::uint32_t pose) {
+          some.add(pulled_back(query.poses[pose], middle_of(lattice, quantisation, cube)));
+        });
       }
       const tbb::spin_mutex::scoped_lock lock(mutex);
       all.add(some);
@@ -321,47 +305,37 @@ void check_seen_space(const StoreReader& store, const QueryParameters& query) {
 namespace {
 
 /// The swept cubes as a map, in which following the beams clears those that were seen.
-struct SweptMap {
-  BrickMap cubes;
-  std::vector<std::uint32_t> cell_of_brick;  ///< of the cloud
-
-  std::uint64_t count() const {
-    std::uint64_t count = 0;
-    for (const std::uint64_t word : cubes.words()) {
-      count += static_cast<std::uint64_t>(std::popcount(word));
-    }
-    return count;
-  }
-};
-
-SweptMap map_of(const BrickCloud& cloud, const SweptCubes& swept, const CubeLattice& lattice) {
+BrickMap map_of(const SweptCubes& swept, const CubeLattice& lattice) {
   std::vector<Brick> bricks;
-  std::vector<std::uint32_t> cell_of_brick;
   std::vector<std::uint64_t> words;
-  for (std::uint32_t cell = 0; cell < swept.bricks.size(); ++cell) {
-    const SweptBrick& brick = swept.bricks[cell];
-    if (brick.count() == 0) continue;
-    bricks.push_back(cloud.bricks()[cell]);
-    cell_of_brick.push_back(cell);
-    words.insert(words.end(), brick.words.begin(), brick.words.end());
+  for (const std::uint32_t cell : swept.cells()) {
+    bricks.push_back(swept.cloud.bricks()[cell]);
+    const CellRows hits = swept.rows.read(cell, PointQuestion::kHits);
+    words.insert(words.end(), hits.words.begin(), hits.words.end());
+    words.resize(bricks.size() * kBrickWords);
   }
-  return {BrickMap(lattice, std::move(bricks), std::move(words)), std::move(cell_of_brick)};
+  return BrickMap(lattice, std::move(bricks), std::move(words));
+}
+
+std::uint64_t count_of(const BrickMap& map) {
+  std::uint64_t count = 0;
+  for (const std::uint64_t word : map.words()) {
+    count += static_cast<std::uint64_t>(std::popcount(word));
+  }
+  return count;
 }
 
 /// The cubes that are left in the map, in their order.
-std::vector<Unseen> unseen_of(const SweptMap& map, const SweptCubes& swept, std::uint64_t count) {
+std::vector<Unseen> unseen_of(const BrickMap& map, const SweptCubes& swept, std::uint64_t count) {
   std::vector<Unseen> unseen;
   unseen.reserve(count);
-  for (std::uint32_t b = 0; b < map.cubes.bricks().size(); ++b) {
-    const SweptBrick& brick = swept.bricks[map.cell_of_brick[b]];
-    std::size_t next = 0;
-    for (std::uint32_t word = 0; word < kBrickWords; ++word) {
-      for (std::uint64_t open = brick.words[word]; open != 0; open &= open - 1, ++next) {
-        const auto bit = static_cast<std::uint32_t>(std::countr_zero(open));
-        if ((map.cubes.words(b)[word] >> bit & 1) == 0) continue;
-        unseen.push_back({map.cubes.bricks()[b].cube(64 * word + bit), brick.first_poses[next]});
-      }
-    }
+  std::uint32_t brick = 0;
+  for (const std::uint32_t cell : swept.cells()) {
+    const std::span<const std::uint64_t> words = map.words(brick++);
+    swept.for_each(cell, [&](const Cube& cube, std::uint32_t pose) {
+      const std::uint32_t entry = entry_of(cube);
+      if ((words[entry / 64] >> entry % 64 & 1) != 0) unseen.push_back({cube, pose});
+    });
   }
   std::sort(unseen.begin(), unseen.end(),
             [](const Unseen& a, const Unseen& b) { return a.cube < b.cube; });
@@ -397,24 +371,30 @@ SeenSpace find_seen_space(const StoreReader& store, const Query& query, const Se
   const BrickCloud cloud(bricks_along(query, how.radius, lattice, store.quantisation(), share),
                          lattice, store.quantisation());
   if (cloud.bricks().empty()) return space;
-  SweptCubes swept;
-  sweep(cloud, cubes, how.memory_bytes - share, share, *how.kind(cloud, cubes), progress, swept,
-        space.taken);
-  space.summary.swept = swept.cubes;
-  space.swept = cross_sections_of(cloud, swept, lattice, store.quantisation(), space.summary.cube,
-                                  query, how.threads, progress);
+  SweptCubes swept(cloud, cubes, share);
+  ProfileSet no_profile;
+  space.taken = run_visit(cloud,
+                          {.query = cubes,
+                           .memory_bytes = how.memory_bytes - share,
+                           .kind = *how.kind(cloud, cubes),
+                           .collect = keep_answer(cloud, swept.rows, no_profile, nullptr),
+                           .stage = "swept space"},
+                          progress);
+  space.summary.swept = swept.count();
+  space.swept = cross_sections_of(swept, lattice, store.quantisation(), space.summary.cube, query,
+                                  how.threads, progress);
   space.sweep_seconds = clock.seconds();
 
-  SweptMap map = map_of(cloud, swept, lattice);
+  BrickMap map = map_of(swept, lattice);
   std::uint64_t bytes = cloud.allocated_bytes() + swept.bytes() +
                         space.swept.size() * kSweptRowBytes +
-                        BrickMap::bytes_for(map.cell_of_brick.size());
+                        BrickMap::bytes_for(map.bricks().size());
   if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
   const Stopwatch following;
-  space.left_out = follow_beams(store, how, how.memory_bytes - bytes, map.cubes, progress);
+  space.left_out = follow_beams(store, how, how.memory_bytes - bytes, map, progress);
   space.beam_seconds = following.seconds();
 
-  const std::uint64_t unseen = map.count();
+  const std::uint64_t unseen = count_of(map);
   bytes += unseen * (sizeof(Unseen) + kUnseenRowBytes);
   if (bytes > how.memory_bytes) refuse_more(bytes, how.memory_bytes);
   space.unseen = rows_of(unseen_of(map, swept, unseen), query.poses);

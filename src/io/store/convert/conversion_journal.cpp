@@ -293,16 +293,26 @@ std::optional<JournalReader> conversion_at(const fs::path& path) {
   return read;
 }
 
+/// The same for a caller that does not own the output: nullopt also where its owner cuts the
+/// journal shorter meanwhile. Whoever goes on then is told that another process writes it.
+std::optional<JournalReader> conversion_of_any_owner(const fs::path& path) {
+  try {
+    return conversion_at(path);
+  } catch (const ResourceError&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 bool unfinished_overwrites(const fs::path& output) {
-  const auto read = conversion_at(journal_of(output));
+  const auto read = conversion_of_any_owner(journal_of(output));
   return read && value_of(*read->identity(), kOverwrites) == value_text(true);
 }
 
 bool remove_left_over(const ConversionOptions& options) {
   const fs::path& output = options.output;
-  const auto read = conversion_at(journal_of(output));
+  const auto read = conversion_of_any_owner(journal_of(output));
   if (!read) return true;
   const bool replaces = value_of(*read->identity(), kOverwrites) == value_text(true);
   if (*read->identity() != identity_of(options, replaces)) return false;

@@ -197,8 +197,7 @@ def check(words, place):
 OF_THE_MOMENT = {
     "seconds", "commands", "reused", "nothing_done", "was_finished", "engine", "device",
     "device_estimate", "searches", "cells_read", "bytes_read", "resumed_cells",
-    "pages", "page_bytes", "slots", "needed_host_bytes", "peak_host_bytes", "peak_device_bytes",
-    "looked_at"}
+    "pages", "page_bytes", "slots", "needed_host_bytes", "peak_host_bytes", "peak_device_bytes"}
 
 
 def of_the_answer(value):
