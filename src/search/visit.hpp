@@ -12,10 +12,10 @@
 
 namespace clearway {
 
-/// A question that is asked of cells, page by page, and where its answer goes. All references
+/// Questions that are asked of cells, page by page, and where the answers go. All references
 /// outlive it.
 struct Visit {
-  const Query& query;
+  const Query& query;  ///< the first question; `kind` knows the others
   std::uint64_t memory_bytes;
   PageEngineKind& kind;
   /// The cells to visit; null for all
