@@ -40,6 +40,7 @@ SlotLayout needed_layout(const PackedCloud& cloud, std::span<const PlannedCell> 
   for (const PlannedPage& page : pages) {
     needed.page_bytes = std::max(needed.page_bytes, page.shape.bytes());
     needed.cells = std::max(needed.cells, page.shape.cells);
+    needed.header_bytes = std::max(needed.header_bytes, page.shape.without_payloads().bytes());
   }
   const std::uint64_t of_a_device = divide_up(pages.size(), devices);
   needed.slots = static_cast<std::uint32_t>(

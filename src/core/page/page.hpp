@@ -69,6 +69,11 @@ struct PageShape {
   CLEARWAY_HD constexpr std::uint64_t bytes() const {
     return aligned(payload_at() + payload_bytes + kPagePadding);
   }
+  constexpr PageShape without_payloads() const {
+    PageShape shape = *this;
+    shape.payload_bytes = 0;
+    return shape;
+  }
 };
 
 /// View of a page at its address, on the host or on a device. Does not own it.

@@ -51,6 +51,8 @@ struct SlotLayout {
   std::uint32_t slots = 1;
   std::uint64_t page_bytes = 0;  ///< size of a page, rounded up to kPageAlignment
   std::uint32_t cells = 1;       ///< greatest number of cells of a page
+  /// Size of a page without coordinates, which lie in the page of another engine; 0: not known
+  std::uint64_t header_bytes = 0;
 };
 
 /// Host memory for the pages and answers of a fixed number of slots, allocated at once.

@@ -122,8 +122,8 @@ class AnswerOfBodies {
 /// and by those that ask about colliding points once these are known.
 class VisitEngine final : public PageEngine {
  public:
-  /// lanes: those of each question together. layout: the one that each engine has. What is referred
-  /// to outlives this engine.
+  /// lanes: those of each question together. layout: that of the first engine. What is referred to
+  /// outlives this engine.
   VisitEngine(const PackedCloud& cloud, std::span<const VisitQuestion> questions,
               std::vector<EngineOfLane> lanes, const SlotLayout& layout);
 
@@ -261,8 +261,7 @@ void VisitEngine::invert_masks(std::uint32_t slot, const EngineOfLane& lane) con
 
 /// Starts the lanes that depend on hits, or the others, of which the first brings the coordinates.
 void VisitEngine::start_lanes(std::uint32_t slot, bool dependent) const {
-  PageShape without_payloads = shapes_[slot];
-  without_payloads.payload_bytes = 0;
+  const PageShape without_payloads = shapes_[slot].without_payloads();
   std::vector<std::size_t> started;
   try {
     for (std::size_t lane = 0; lane < lanes_.size(); ++lane) {
@@ -451,6 +450,14 @@ void VisitKind::resolve_devices() {
   needs_ = needs_of_lanes();
 }
 
+/// The layout of a lane's engine: the first one alone has coordinates.
+SlotLayout VisitKind::layout_of(const Lane& lane, SlotLayout layout) const {
+  if (&lane != lanes_.front().get() && layout.header_bytes > 0) {
+    layout.page_bytes = layout.header_bytes;
+  }
+  return layout;
+}
+
 /// With the inputs of the further questions, which are there as long as the index is.
 std::uint64_t VisitKind::index_bytes() const {
   std::uint64_t bytes = 0;
@@ -469,13 +476,15 @@ std::uint64_t VisitKind::host_bytes(const SlotLayout& layout, std::uint64_t most
     if (question.query.bodies.empty()) continue;
     bytes += needs_.devices * AnswerOfBodies::bytes(cloud_, question.query, layout, most_poses);
   }
-  for (const auto& lane : lanes_) bytes += lane->kind->host_bytes(layout, most_poses);
+  for (const auto& lane : lanes_) {
+    bytes += lane->kind->host_bytes(layout_of(*lane, layout), most_poses);
+  }
   return bytes;
 }
 
 std::uint64_t VisitKind::device_bytes(const SlotLayout& layout) const {
   std::uint64_t bytes = 0;
-  for (const auto& lane : lanes_) bytes += lane->kind->device_bytes(layout);
+  for (const auto& lane : lanes_) bytes += lane->kind->device_bytes(layout_of(*lane, layout));
   return bytes;
 }
 
@@ -488,7 +497,7 @@ void VisitKind::log_index(const MessageLog& log) const {
 PageEngines VisitKind::make(const SlotLayout& layout) {
   std::vector<std::vector<EngineOfLane>> of_device(needs_.devices);
   for (const auto& lane : lanes_) {
-    PageEngines engines = lane->kind->make(layout);
+    PageEngines engines = lane->kind->make(layout_of(*lane, layout));
     const auto& bodies = questions_[lane->question].query.bodies;
     const auto path_pose =
         bodies.empty() ? std::span<const std::uint32_t>() : std::span(bodies[lane->body].path_pose);

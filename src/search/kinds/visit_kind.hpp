@@ -66,6 +66,7 @@ class VisitKind final : public PageEngineKind {
 
   const Lane& lane_of(std::uint32_t node) const;
   PageEngineNeeds needs_of_lanes() const;
+  SlotLayout layout_of(const Lane& lane, SlotLayout layout) const;
   bool depends(const Lane& lane) const {
     return lane.question > 0 && questions_[lane.question].of == VisitQuestion::Of::kHits;
   }
