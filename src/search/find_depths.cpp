@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"
@@ -94,7 +95,9 @@ void search_cell(std::uint32_t cell, Searches& searches, AnswerRows& rows, Progr
       progress.advance(static_cast<std::uint64_t>(std::popcount(words[block])));
     }
   });
-  rows.add(cell, {{PointQuestion::kDepths, depths}});
+  std::vector<AnswerRows::Part> found;
+  found.push_back({PointQuestion::kDepths, std::move(depths)});
+  rows.add(cell, found);
 }
 
 }  // namespace

@@ -334,10 +334,10 @@ void LedgerEvidence::look_at_store(std::span<const LedgerPlaces* const> rows,
   };
   constexpr auto kAllBlocks = std::numeric_limits<std::uint32_t>::max();
   const ScanPoints points(*store_, kAllBlocks);
+  const bool knows_class = !header.ignore_classes.empty() && store_->has_classes();
   for (Row& row : open) {
     throw_if_stopped(progress_);
     const auto look = [&](const Vec3& p, std::uint32_t cell, std::uint32_t index) {
-      const bool knows_class = !header.ignore_classes.empty() && store_->has_classes();
       if (!row.has_ignored && is_ignored(p, knows_class ? store_->class_of(cell, index) : 0)) {
         row.has_ignored = row.gap.near(p).has_value();
       }

@@ -42,7 +42,7 @@
 namespace clearway {
 namespace {
 
-/// What a search has found, and what its last pass has left.
+/// What a search has found, and what its last visit has left.
 struct AllFound : FoundAnswer {
   VisitEnd end;
 };
@@ -328,7 +328,7 @@ class Search {
   /// question after another.
   VisitEnd visit_all(Device device, std::span<const PointQuestion> questions, bool end_gpus,
                      ProfileSet& profile) {
-    if (device == Device::kCpu && options_.engine == Engine::kSweep && questions.size() > 1) {
+    if (device == Device::kCpu && options_.engine == Engine::kSweep && may_join(questions.size())) {
       try {
         return visit(device, questions, false, profile);
       } catch (const ResourceError& error) {
@@ -342,6 +342,17 @@ class Search {
       end = {std::min(end.write_bytes, one.write_bytes), std::move(one.engine_end)};
     }
     return end;
+  }
+
+  /// Whether so many questions can be asked in one visit, as far as their inputs alone show: these
+  /// are copied before the visit is planned.
+  bool may_join(std::size_t questions) const {
+    const std::uint64_t inputs = input_bytes(store_, query_);
+    const std::uint64_t of_question =
+        inputs - store_.allocated_bytes() + tree_building_bytes(query_);
+    return questions > 1 && program_bytes(options_.threads) + search_result_bytes(store_, query_) +
+                                    inputs + questions * of_question <=
+                                options_.memory_bytes;
   }
 
   /// Asks these questions of all cells that have not been asked all of them, page by page.
@@ -473,8 +484,9 @@ class Search {
                                                   const PageResult& page) {
         for (std::size_t i = 0; i < cells.size(); ++i) {
           std::vector<AnswerRows::Part> parts;
-          add_rows(question, cells[i].cell, page, i,
-                   rows_->read(cells[i].cell, PointQuestion::kHits), parts);
+          add_rows(
+              question, cells[i].cell, page, i,
+              [&] { return rows_->read(cells[i].cell, PointQuestion::kHits); }, parts);
           rows_->add(cells[i].cell, parts);
         }
       };
@@ -484,7 +496,9 @@ class Search {
                                          std::size_t index, std::vector<AnswerRows::Part>& parts) {
                          const CellRows hits{.words = parts.front().rows.words};
                          for (std::size_t i = 1; i < questions.size(); ++i) {
-                           add_rows(questions[i], cell, page.further[i - 1], index, hits, parts);
+                           add_rows(
+                               questions[i], cell, page.further[i - 1], index,
+                               [&]() -> const CellRows& { return hits; }, parts);
                          }
                          // Without errors in the way, all that collide are certain.
                          if (header_.budget && !(certain_radius() < query_.radius)) {
@@ -493,14 +507,14 @@ class Search {
                        });
   }
 
-  /// Adds what a page says to a question about cell `index` of it. hits: the points of the cell
-  /// that collide.
+  /// Adds what a page says to a question about cell `index` of it. hits(): returns the points of
+  /// the cell that collide; called only if they are needed.
+  template <typename Hits>
   void add_rows(PointQuestion question, std::uint32_t cell, const PageResult& page,
-                std::size_t index, const CellRows& hits,
-                std::vector<AnswerRows::Part>& parts) const {
+                std::size_t index, const Hits& hits, std::vector<AnswerRows::Part>& parts) const {
     CellRows found = hit_rows(store_, page, index);
     if (question == PointQuestion::kNear || question == PointQuestion::kBelow) {
-      found = without(found, hits);
+      found = without(found, hits());
     } else if (question == PointQuestion::kIgnored) {
       parts.push_back(
           {PointQuestion::kIgnoredHigh, high_points(store_, query_, above_ground_, cell, found)});
@@ -508,8 +522,9 @@ class Search {
     } else if (question == PointQuestion::kCertain && !(certain_radius() > 0)) {
       const double deeper = -(certain_radius() * certain_radius());
       const CellRows clearances = clearance_rows(store_, page, index);
+      const CellRows& colliding = hits();
       found = points_where(clearances, [&](std::uint32_t point, std::size_t row) {
-        return clearances.distances[row] < deeper && hits.contains(point);
+        return clearances.distances[row] < deeper && colliding.contains(point);
       });
     }
     parts.push_back({question, std::move(found)});

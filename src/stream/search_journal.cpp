@@ -130,7 +130,8 @@ CollectPage keep_answer(const PackedCloud& cloud, AnswerRows& rows, ProfileSet& 
     offer_profile(cloud, cells, found.profile, profile);
     if (journal != nullptr) journal->append_profile(cells, found.profile, profile);
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      std::vector<AnswerRows::Part> parts{{PointQuestion::kHits, hit_rows(cloud, found, i)}};
+      std::vector<AnswerRows::Part> parts;  // not from a list, which would copy the rows
+      parts.push_back({PointQuestion::kHits, hit_rows(cloud, found, i)});
       if (rows.asks(PointQuestion::kClearances)) {
         parts.push_back({PointQuestion::kClearances, clearance_rows(cloud, found, i)});
       }

@@ -12,8 +12,8 @@ namespace clearway {
 
 /// A question that a visit asks of points.
 struct VisitQuestion {
-  /// Of which points it is asked: those that are searched, those that are ignored, or those that
-  /// collide by the first question of the visit.
+  /// The points that a question is asked of are those that are searched, those that are ignored, or
+  /// those that collide by the first question of the visit.
   enum class Of { kSearched, kIgnored, kHits };
 
   const Query& query;

@@ -293,8 +293,9 @@ std::optional<JournalReader> conversion_at(const fs::path& path) {
   return read;
 }
 
-/// The same for a caller that does not own the output: nullopt also where its owner cuts the
-/// journal shorter meanwhile. Whoever goes on then is told that another process writes it.
+/// The journal of a conversion at a path, for a caller that does not own the output. It is nullopt
+/// also where the owner cuts the journal shorter while it is read; the caller is then refused when
+/// it tries to own the output.
 std::optional<JournalReader> conversion_of_any_owner(const fs::path& path) {
   try {
     return conversion_at(path);
