@@ -324,15 +324,14 @@ class Search {
   void take_memory(std::uint64_t bytes) { memory_.take(bytes, progress_); }
 
   /// Asks all questions in one visit where there is memory for it, and otherwise one after another.
-  /// Leaves in the end of the last visit the memory that is left to write with. GPUs are asked one
-  /// question after another.
+  /// Leaves in the end of the last visit the memory that is left to write with.
   VisitEnd visit_all(Device device, std::span<const PointQuestion> questions, bool end_gpus,
                      ProfileSet& profile) {
-    if (device == Device::kCpu && options_.engine == Engine::kSweep && may_join(questions.size())) {
+    if (options_.engine == Engine::kSweep && may_join(questions.size())) {
       try {
-        return visit(device, questions, false, profile);
+        return visit(device, questions, end_gpus, profile);
       } catch (const ResourceError& error) {
-        if (is_visiting_ || error.remedy() != Remedy::kMoreMemory) throw;
+        if (is_visiting_ || !is_short_of_memory(error)) throw;
       }
     }
     VisitEnd end{.write_bytes = ~std::uint64_t{0}};
@@ -342,6 +341,13 @@ class Search {
       end = {std::min(end.write_bytes, one.write_bytes), std::move(one.engine_end)};
     }
     return end;
+  }
+
+  /// Whether an error says that memory, of the host or of a device, is too little.
+  static bool is_short_of_memory(const ResourceError& error) {
+    using enum Remedy;
+    const Remedy remedy = error.remedy();
+    return remedy == kMoreMemory || remedy == kMoreDeviceMemory || remedy == kOtherGpu;
   }
 
   /// Whether so many questions can be asked in one visit, as far as their inputs alone show: these

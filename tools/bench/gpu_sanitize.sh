@@ -21,6 +21,8 @@ questions=("$points --engine sweep" "$points --engine sweep --first-pose" "$poin
   "$points --engine sweep --between-poses --first-pose" "$points --engine sweep --profile 0.5"
   "$points --engine sweep --seen" "$points --engine sweep --between-poses --seen"
   "$points --engine grid" "$points --engine grid --first-pose")
+every="--first-pose --clearance 0.3 --profile 0.5 --floor 0.2 --error-scan 5mm --error-pose 1cm --ignore-box 0,0,0,50,50,50"
+questions+=("$points --engine sweep $every" "$vehicle $every")
 for model in "$surface" "$solid" "$vehicle"; do
   questions+=("$model --first-pose" "$model --clearance 0.3" "$model --profile 0.5" "$model --seen")
 done

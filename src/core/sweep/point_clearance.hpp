@@ -102,21 +102,30 @@ class PointClearance {
     return bounds.squared_lower;
   }
 
-  CLEARWAY_HD bool is_given_up(std::uint32_t at, double squared_lower) const {
-    const MotionNode& node = sweep_.motion.nodes[at];
-    if (sweep_.floor_side(node, e_) == FloorSide::kBelow) return true;
-    return farther(sweep_.motion.inverse_poses[node.mid].least, squared_lower, reach_ + node.delta);
-  }
-
   /// Searches all poses of a node. In preorder the subtree of a range of n poses is a run of 2 n -
   /// 1 nodes, so that no stack is needed.
   CLEARWAY_HD void search(std::uint32_t top, double squared_lower) {
     const std::uint32_t end = top + size_of(top);
     for (std::uint32_t at = top; at < end;) {
       if (at != top) squared_lower = look(at);
-      const bool done = is_given_up(at, squared_lower) || search_model(at);
-      at += done ? size_of(at) : 1;
+      at += is_done(at, squared_lower) ? size_of(at) : 1;
     }
+  }
+
+  /// Whether the poses of a node are given up or have been searched. Where only some of them may
+  /// count, its halves are searched instead: the nearest pairs may be pairs that do not count, so
+  /// that none would come near enough to bound the others.
+  CLEARWAY_HD bool is_done(std::uint32_t at, double squared_lower) {
+    const MotionNode& node = sweep_.motion.nodes[at];
+    const FloorSide side = sweep_.floor_side(node, e_);
+    if (side == FloorSide::kBelow) return true;
+    const double least = sweep_.motion.inverse_poses[node.mid].least;
+    if (farther(least, squared_lower, reach_ + node.delta)) return true;
+    if (side == FloorSide::kOpen) {
+      if (!sweep_.motion.curves[at].is_one_place()) return false;
+      if (!sweep_.counts(e_, node.first)) return true;
+    }
+    return search_model(at);
   }
 
   /// Whether a curve with this error leaves few model points open.
