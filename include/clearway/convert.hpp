@@ -125,14 +125,10 @@ struct ConvertReport {
   double largest_change = 0;  ///< greatest change of a coordinate by rounding to the scale, metres
   std::uint64_t temporary_bytes = 0;
   std::uint64_t output_bytes = 0;
-  /// Points of the inputs that an earlier call had distributed, and cells that it had written,
-  /// which were taken over because ConvertOptions::resume is set
-  std::uint64_t resumed_points = 0, resumed_cells = 0;
-  /// Batches of the inputs, of 65,536 points or so, and buckets of the store that the earlier call
-  /// had begun to distribute and to write and had not finished, so that they were done twice
-  std::uint64_t repeated_batches = 0, repeated_buckets = 0;
-  /// Batches that were counted twice
-  std::uint64_t recounted_batches = 0;
+  /// What an interrupted call had come to, which was taken over because ConvertOptions::resume is
+  /// set: "the inputs were inspected", "all points were counted" or "all points were distributed".
+  /// Empty where nothing was taken over
+  std::string resumed_from = {};
   /// Wall-clock seconds of the stages; count_seconds includes everything before that stage.
   double count_seconds = 0, distribute_seconds = 0, partition_seconds = 0, confirm_seconds = 0;
   std::vector<StageSeconds> busy_seconds = {};

@@ -307,17 +307,10 @@ void add_convert_report(py::module_& module) {
       .def_readonly("temporary_bytes", &Report::temporary_bytes,
                     "How many bytes temporary files took.")
       .def_readonly("output_bytes", &Report::output_bytes, "How many bytes the store has.")
-      .def_readonly("resumed_points", &Report::resumed_points,
-                    "How many points of the inputs an interrupted call had distributed, which "
-                    "resume=True took over.")
-      .def_readonly("resumed_cells", &Report::resumed_cells,
-                    "How many cells it had written, which were taken over.")
-      .def_readonly("recounted_batches", &Report::recounted_batches,
-                    "How many batches of the inputs were counted twice.")
-      .def_readonly("repeated_batches", &Report::repeated_batches,
-                    "How many batches of the inputs were distributed twice.")
-      .def_readonly("repeated_buckets", &Report::repeated_buckets,
-                    "How many buckets of the store were put in order twice.")
+      .def_readonly("resumed_from", &Report::resumed_from,
+                    "What an interrupted call had come to, which resume=True took over: 'the inputs "
+                    "were inspected', 'all points were counted' or 'all points were distributed'. "
+                    "Empty where nothing was taken over.")
       .def_readonly("count_seconds", &Report::count_seconds,
                     "Seconds of counting the points of the inputs.")
       .def_readonly("distribute_seconds", &Report::distribute_seconds,

@@ -101,16 +101,9 @@ nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand
   out["largest_change"] = nullptr;
   out["temporary_bytes"] = nullptr;
   out["output_bytes"] = std::filesystem::file_size(options.output);
-  for (const char* key : {"resumed_points", "resumed_cells", "recounted_batches",
-                          "repeated_batches", "repeated_buckets"}) {
-    out[key] = nullptr;
-  }
+  out["resumed_from"] = nullptr;
   if (!report.was_finished) {
-    out["resumed_points"] = report.resumed_points;
-    out["resumed_cells"] = report.resumed_cells;
-    out["recounted_batches"] = report.recounted_batches;
-    out["repeated_batches"] = report.repeated_batches;
-    out["repeated_buckets"] = report.repeated_buckets;
+    if (!report.resumed_from.empty()) out["resumed_from"] = report.resumed_from;
     out["non_finite"] = report.non_finite_points;
     out["absent"] = report.absent_points;
     out["largest_change"] = report.largest_change;
@@ -162,14 +155,6 @@ void log_report(const ConvertCommand& options, const ConvertReport& report) {
   if (report.largest_change > 0) {
     spdlog::info("coordinates changed by at most {:.3g} (rounded to the scale)",
                  report.largest_change);
-  }
-  if (report.resumed_points + report.recounted_batches + report.repeated_batches > 0) {
-    spdlog::info(
-        "taken over from before: {} distributed, {} written; done again: {} counted, {} "
-        "distributed, {} written",
-        counted(report.resumed_points, "point"), counted(report.resumed_cells, "cell"),
-        counted(report.recounted_batches, "batch", "batches"), report.repeated_batches,
-        counted(report.repeated_buckets, "bucket"));
   }
   spdlog::info(
       "seconds: count {:.2f}, distribute {:.2f}, partition {:.2f}, confirm {:.2f}; temporary {}",

@@ -84,19 +84,6 @@ PendingFile::~PendingFile() {
   if (!published_ && !kept_) ::unlink(partial_.c_str());
 }
 
-File PendingFile::set_aside(const fs::path& path) {
-  File fresh = create_locked(path);
-  fresh.truncate(0);
-  // The two names change places at once, so that no other process finds the partial file's free.
-  int failed = ::renameat2(AT_FDCWD, partial_.c_str(), AT_FDCWD, path.c_str(), RENAME_EXCHANGE);
-  if (failed != 0 && errno == EINVAL) {  // a file system that cannot do that
-    failed = ::rename(partial_.c_str(), path.c_str());
-    if (failed == 0) fresh = create_locked(partial_);
-  }
-  if (failed != 0) fail_with_errno(path, "give that name to the unfinished file");
-  return std::exchange(lock_, std::move(fresh));
-}
-
 void PendingFile::refuse_existing() {
   overwrite_ = false;
   check_output_name(final_, overwrite_);

@@ -30,10 +30,6 @@ class PendingFile {
   /// Whether the destructor leaves an unpublished file for a later process.
   void keep(bool kept) { kept_ = kept; }
 
-  /// Gives the partial file another name, under which it belongs to this object still, and begins
-  /// an empty one. A file that has the other name already is lost. Returns the file, open.
-  File set_aside(const std::filesystem::path& path);
-
   /// Waits until the file is on the disk, so that publish() need not.
   void sync() const;
 

@@ -6,7 +6,6 @@
 #include <array>
 #include <cinttypes>
 #include <cstdio>
-#include <cstring>
 
 namespace clearway {
 
@@ -38,16 +37,5 @@ void Xxh64Stream::update(std::span<const std::byte> bytes) {
 }
 
 std::uint64_t Xxh64Stream::digest() const { return XXH64_digest(&state_->xxhash); }
-
-std::vector<std::byte> Xxh64Stream::save() const {
-  const auto bytes = std::as_bytes(std::span(&state_->xxhash, 1));
-  return {bytes.begin(), bytes.end()};
-}
-
-bool Xxh64Stream::restore(std::span<const std::byte> saved) {
-  if (saved.size() != sizeof state_->xxhash) return false;
-  std::memcpy(&state_->xxhash, saved.data(), saved.size());
-  return true;
-}
 
 }  // namespace clearway

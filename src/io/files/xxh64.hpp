@@ -24,10 +24,6 @@ class Xxh64Stream {
   Xxh64Stream& operator=(const Xxh64Stream& other);
   void update(std::span<const std::byte> bytes);
   std::uint64_t digest() const;
-  /// What was hashed, for restore() in the same build.
-  std::vector<std::byte> save() const;
-  /// Goes on from there. Returns false, and stays as it is, for bytes that save() did not make.
-  bool restore(std::span<const std::byte> saved);
 
  private:
   struct State;

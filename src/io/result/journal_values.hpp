@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "clearway/progress.hpp"
-#include "io/files/xxh64.hpp"
 #include "io/result/journal.hpp"
 
 namespace clearway {
@@ -96,12 +95,6 @@ class JournalValues {
   void one(Message& message) {
     add(message.severity, message.code, message.text, message.numbers, message.stretches,
         message.body);
-  }
-
-  void one(Xxh64Stream& hash) {
-    std::vector<std::byte> saved = hash.save();
-    one(saved);
-    if (payload_ != nullptr && !hash.restore(saved)) payload_->refuse("a hash of another build");
   }
 
   template <typename Value>

@@ -329,18 +329,6 @@ struct StoreWriter::State {
     return {cell, of.address[cell], of.bytes[cell], of.xxh64[cell]};
   }
 
-  std::vector<ChunkPlace> places_of(std::size_t cell) const {
-    std::vector<ChunkPlace> places;
-    for (std::size_t i = 4 * cell; i < 4 * cell + 4; ++i) {
-      places.push_back({index.address[i], index.bytes[i], index.xxh64[i]});
-    }
-    for (const Column& column : columns) {
-      const ColumnIndex& of = column.index;
-      places.push_back({of.address[cell], of.bytes[cell], of.xxh64[cell]});
-    }
-    return places;
-  }
-
   void confirm_address(const File& reread, const WrittenChunk& chunk) const {
     const auto bytes = std::make_unique_for_overwrite<std::byte[]>(chunk.bytes);
     const std::span<std::byte> read(bytes.get(), chunk.bytes);
@@ -406,7 +394,7 @@ StoreWriter::~StoreWriter() {
   state_.reset();
 }
 
-std::vector<ChunkPlace> StoreWriter::append(const PackedCell& packed) {
+void StoreWriter::append(const PackedCell& packed) {
   const hdf5::QuietScope quiet;
   State& state = *state_;
   CellIndex& index = state.index;
@@ -424,7 +412,6 @@ std::vector<ChunkPlace> StoreWriter::append(const PackedCell& packed) {
   index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
   index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
   state.spool_blocks(packed.blocks);
-  return state.places_of(cell);
 }
 
 void StoreWriter::finish(const std::vector<TopNode>& tree) {

@@ -29,13 +29,6 @@ struct PackedCell {
   PackedColumn classes = {}, origins = {};
 };
 
-/// Where a packed chunk is in a store, and its hash.
-struct ChunkPlace {
-  std::uint64_t address = 0;
-  std::uint64_t bytes = 0;
-  std::uint64_t xxh64 = 0;
-};
-
 /// Fills in the hashes of the chunks. Called by the threads that pack, because the writer has only
 /// one.
 void hash_chunks(PackedCell& packed);
@@ -49,9 +42,7 @@ class StoreWriter {
               std::uint64_t cells);
   ~StoreWriter();
 
-  /// Appends a cell. Its bytes have reached the system when this returns. Returns where its chunks
-  /// are: x, y, z, source, and those of the columns that the store has.
-  std::vector<ChunkPlace> append(const PackedCell& cell);
+  void append(const PackedCell& cell);
 
   /// Writes the index and closes the file.
   void finish(const std::vector<TopNode>& tree);

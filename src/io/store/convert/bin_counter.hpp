@@ -37,17 +37,6 @@ class BinCounter {
   /// The occupied bins, in an order that depends on the points alone.
   std::vector<Bin> bins() const;
 
-  /// Keeps the bins, as add() and merge() can go on from them.
-  template <typename Values>
-  void keep(Values& values) {
-    std::vector<Slot> occupied;
-    std::ranges::copy_if(slots_, std::back_inserter(occupied),
-                         [](const Slot& slot) { return slot.count != 0; });
-    values.add(shift_, occupied);
-    clear();
-    for (const Slot& slot : occupied) add_key(slot.key, slot.count);
-  }
-
  private:
   using Key = std::array<std::uint64_t, 3>;  // a regular lattice has up to 62 bits per axis
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -18,7 +17,6 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "core/util/shortened.hpp"
-#include "io/files/parallel_loop.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/store/convert/conversion_identity.hpp"
 #include "io/store/convert/input_files.hpp"
@@ -28,24 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a record is about, its first byte (docs/design/conversion.md).
-enum Kind : std::uint8_t {
-  kFound = 1,
-  kCountedPart,
-  kCounted,
-  kPointFiles,
-  kBegunBatch,
-  kBatch,
-  kDistributed,
-  kBegunUnit,
-  kUnit,
-  kCutBatches,
-  kCutUnits,
-};
-
 constexpr const char* kOverwrites = "overwrites";
 // Changes whenever records, or what they rest on, change their meaning.
-constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 2";
+constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 3";
 
 // The names in an identity of an input, and of the state of a file that another name has.
 constexpr const char* kInput = "input ";
@@ -264,25 +247,15 @@ fs::path points_of(const fs::path& output, std::size_t file) {
   return output.string() + ".points-" + std::to_string(file + 1);
 }
 
-fs::path aside_of(const fs::path& output) { return output.string() + ".written"; }
-
-void remove_points_of(const fs::path& output, std::size_t first) {
-  for (; has_points_magic(points_of(output, first)); ++first) remove_file(points_of(output, first));
+std::size_t point_files_of(const fs::path& output) {
+  std::size_t files = 0;
+  while (has_points_magic(points_of(output, files))) ++files;
+  return files;
 }
 
-/// Removes all that an unfinished conversion left beside its output but the journal.
-void remove_work_of(const fs::path& output) {
-  remove_points_of(output, 0);
-  if (is_file(aside_of(output))) remove_file(aside_of(output));
-}
-
-/// Whether a chunk of the file has the hash that it had when it was written.
-bool read_chunk(const File& file, std::uint64_t size, const ChunkPlace& place,
-                std::vector<std::byte>& bytes) {
-  if (place.bytes > size || place.address > size - place.bytes) return false;
-  bytes.resize(place.bytes);
-  file.read_at(place.address, bytes);
-  return xxh64(bytes) == place.xxh64;
+/// Removes the files of points that an unfinished conversion left beside its output.
+void remove_points_of(const fs::path& output) {
+  for (std::size_t file = point_files_of(output); file-- > 0;) remove_file(points_of(output, file));
 }
 
 /// The journal of a conversion at a path; nullopt where there is none.
@@ -319,7 +292,7 @@ bool remove_left_over(const ConversionOptions& options) {
   if (*read->identity() != identity_of(options, replaces)) return false;
   const PendingFile owned(output, true);
   if (!conversion_at(journal_of(output))) return true;
-  remove_work_of(output);
+  remove_points_of(output);
   remove_file(journal_of(output));
   return true;
 }
@@ -332,8 +305,20 @@ void give_way_to_stream(PendingFile& pending, const ConversionOptions& options) 
     throw UsageError(journal.string() + ": belongs to an unfinished conversion",
                      Remedy::kOverwrite);
   }
-  remove_work_of(options.output);
+  remove_points_of(options.output);
   remove_file(journal);
+}
+
+const char* in_words(ConversionPhase phase) {
+  switch (phase) {
+    case ConversionPhase::kInspected:
+      return "the inputs were inspected";
+    case ConversionPhase::kCounted:
+      return "all points were counted";
+    case ConversionPhase::kDistributed:
+      return "all points were distributed";
+  }
+  return "";
 }
 
 ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptions& options,
@@ -344,33 +329,28 @@ ConversionJournal::ConversionJournal(PendingFile& pending, const ConversionOptio
       path_(journal_of(options.output)),
       replaces_(options.overwrite && fs::exists(options.output)) {
   find_earlier();
-  identity_ = identity_of(options_, replaces_);
+  const JournalIdentity identity = identity_of(options_, replaces_);
   if (read_) {
-    const std::string differs = difference_in_words(*read_->identity(), identity_);
+    const std::string differs = difference_in_words(*read_->identity(), identity);
     if (!differs.empty()) {
       throw UsageError(
           path_.string() + ": belongs to another conversion: " + shortened(differs, 600),
           Remedy::kRestoreOptions);
     }
-    for (std::size_t i = 0; i < files_; ++i) {
-      refuse_other_file(points_path(i), has_points_magic(points_path(i)));
-    }
-    refuse_other_file(aside_path(), is_file(aside_path()));
-    log_.note(path_.string() + ": goes on with an unfinished conversion; " + work_text());
+    refuse_other_file(points_of(options_.output, point_files()), false);
+    log_.note(path_.string() + ": goes on with an unfinished conversion; " + in_words(*finished_));
     writer_.emplace(JournalWriter::resume(path_, *read_, kNever));
     pending_.keep(false);
     return;
   }
-  // Without a journal there is no unfinished conversion whose file this could be.
-  if (unwanted_.empty()) refuse_other_file(aside_path(), false);
   pending_.keep(false);
   if (!unwanted_.empty()) {
     log_.note(path_.string() + ": " + unwanted_);
-    remove_work_of(options_.output);
+    remove_points();
     remove_file(path_);
   }
   try {
-    writer_.emplace(JournalWriter::create(path_, identity_, kNever));
+    writer_.emplace(JournalWriter::create(path_, identity, kNever));
   } catch (const ResourceError&) {
     std::error_code unknown;
     fs::remove(path_, unknown);  // a journal without its beginning, on a full disk
@@ -403,202 +383,65 @@ void ConversionJournal::find_earlier() {
                      ": is the journal of an unfinished run; finish it, or choose another output");
   }
   // Records of another release may mean something else, and the comparison of identities says so.
-  if (!is_empty && read.identity()->front().second == kMeaning) {
-    std::uint64_t place = 0;
-    read.for_each([&](JournalPayload payload) { read_record(payload, place++); });
+  const bool is_known = is_empty || read.identity()->front().second == kMeaning;
+  if (!is_empty && is_known) {
+    read.for_each([&](JournalPayload payload) {
+      const auto phase = payload.take<ConversionPhase>();
+      if (*in_words(phase) == 0) payload.refuse("is of an unknown kind");
+      finished_ = phase;
+    });
   }
-  if (!has_work() && (is_empty || read.identity()->front().second == kMeaning)) {
+  if (is_known && !finished_) {
     unwanted_ = "nothing in it yet, starts from the beginning";
-    found_.reset();
-    begun_batches_ = 0;
     return;
   }
-  distributed_records_ = batches_.empty() ? 0 : batches_.back().counts.input_points;
   if (!options_.resume) {
-    throw UsageError(
-        path_.string() + ": is the journal of an unfinished conversion; " + work_text(),
-        Remedy::kResumeOrOverwrite);
+    throw UsageError(path_.string() + ": is the journal of an unfinished conversion" +
+                         (finished_ ? std::string("; ") + in_words(*finished_) : std::string()),
+                     Remedy::kResumeOrOverwrite);
   }
   if (!read.torn().empty()) {
     log_.note(path_.string() + ": " + read.torn() + "; it is cut off and done again");
   }
   replaces_ = value_of(*read.identity(), kOverwrites) == value_text(true);
   read_.emplace(std::move(read));
-  take_last_hashes();
 }
 
-void ConversionJournal::read_record(JournalPayload payload, Place place) {
-  const auto kind = payload.take<std::uint8_t>();
-  JournalValues values(payload);
-  std::uint64_t number = 0;
-  switch (kind) {
-    case kFound:
-      values.add(found_.emplace());
-      break;
-    case kCountedPart:
-      counted_part_ = place;
-      break;
-    case kCounted:
-      counted_ = place;
-      begun_batches_ = 0;
-      break;
-    case kPointFiles:
-      values.add(number);
-      files_ = number;
-      break;
-    case kBegunBatch:
-      values.add(begun_batches_);
-      break;
-    case kBatch:
-      values.add(batches_.emplace_back());
-      batches_.back().hashes = {};
-      places_of_batches_.push_back(place);
-      break;
-    case kDistributed:
-      distributed_ = place;
-      break;
-    case kBegunUnit:
-      values.add(begun_units_);
-      break;
-    case kUnit: {
-      std::vector<WrittenCell> cells;
-      values.add(cells);
-      for (const WrittenCell& cell : cells) {
-        for (const ChunkPlace& chunk : cell.chunks) {
-          written_bytes_ = std::max(written_bytes_, chunk.address + chunk.bytes);
-        }
-      }
-      written_cells_ += cells.size();
-      units_.push_back(place);
-      break;
-    }
-    case kCutBatches:
-      values.add(number);
-      batches_.resize(std::min<std::uint64_t>(batches_.size(), number));
-      places_of_batches_.resize(batches_.size());
-      distributed_.reset();
-      break;
-    case kCutUnits:
-      values.add(number);
-      units_.resize(std::min<std::uint64_t>(units_.size(), number));
-      break;
-    default:
-      payload.refuse("is of an unknown kind");
-  }
-}
-
-bool ConversionJournal::has_work() const {
-  const bool has_read = found_ && (found_->chosen || !found_->readable.skipped.empty());
-  return has_read || counted_part_ || counted_;
-}
-
-std::string ConversionJournal::work_text() const {
-  if (!units_.empty()) {
-    return "all points were distributed, and " + counted(written_cells_, "cell was", "cells were") +
-           " written";
-  }
-  if (distributed_) return "all points were distributed";
-  if (distributed_records_ > 0) {
-    return "all points were counted, and " + format_count(distributed_records_) +
-           (distributed_records_ == 1 ? " was" : " were") + " distributed";
-  }
-  if (counted_) return "all points were counted";
-  return counted_part_ ? "a part of the points was counted" : "the inputs were inspected";
-}
-
-bool ConversionJournal::take(std::optional<Place> place,
+bool ConversionJournal::take(ConversionPhase phase,
                              const std::function<void(JournalValues&)>& use) const {
-  if (!read_ || !place) return false;
-  Place at = 0;
+  if (!read_ || finished_ < phase) return false;
+  bool found = false;
   read_->for_each([&](JournalPayload payload) {
-    if (at++ != *place) return;
-    payload.take<std::uint8_t>();
+    if (payload.take<ConversionPhase>() != phase) return;
     JournalValues values(payload);
     use(values);
+    found = true;
   });
-  return true;
+  return found;
 }
 
-void ConversionJournal::append(JournalRecord& record) {
+void ConversionJournal::keep(ConversionPhase phase,
+                             const std::function<void(JournalValues&)>& what) {
+  JournalRecord record;
+  record.put(phase);
+  JournalValues values(record);
+  what(values);
   writer_->append(record);
+  finished_ = phase;
   if (options_.journalled) options_.journalled();
 }
 
-void ConversionJournal::keep(int kind, const std::function<void(JournalValues&)>& what) {
-  JournalRecord record;
-  record.put(static_cast<std::uint8_t>(kind));
-  JournalValues values(record);
-  what(values);
-  append(record);
-}
-
-void ConversionJournal::keep_found(FoundInputs found) {
-  if (found_) return;
-  found_ = std::move(found);
-  keep(kFound, [&](JournalValues& values) { values.add(*found_); });
-}
-
-bool ConversionJournal::wants_counted() {
-  // Ever more rarely, so that the journal of a long pass does not grow without bounds; and no more
-  // often than pauses take two hundredths of the time.
-  constexpr double kShare = 0.02;
-  const auto seconds = [](auto duration) {
-    return std::chrono::duration<double>(duration).count();
-  };
-  const Clock::time_point now = Clock::now();
-  if (options_.counted_interval_seconds > 0 &&
-      seconds(now - counted_at_) <
-          std::max({options_.counted_interval_seconds, kShare * seconds(now - begun_at_),
-                    seconds(counted_at_ - paused_at_) / kShare})) {
-    return false;
-  }
-  paused_at_ = now;
-  return true;
-}
-
-bool ConversionJournal::take_counted_part(const std::function<void(JournalValues&)>& use) {
-  return take(counted_part_, use);
-}
-
-void ConversionJournal::keep_counted_part(const std::function<void(JournalValues&)>& what) {
-  keep(kCountedPart, what);
-  counted_part_ = 0;
-  counted_at_ = Clock::now();
-}
-
-bool ConversionJournal::take_counted(const std::function<void(JournalValues&)>& use) {
-  return take(counted_, use);
-}
-
-void ConversionJournal::keep_counted(const std::function<void(JournalValues&)>& what) {
-  keep(kCounted, what);
-  counted_ = 0;
-  begun_batches_ = 0;
-}
-
-void ConversionJournal::begin_batch(std::uint64_t number) {
-  keep(kBegunBatch, [&](JournalValues& values) { values.add(number); });
-}
-
-void ConversionJournal::go_on_after_batches(std::uint64_t batches) {
-  const std::uint64_t repeated = std::max(begun_batches_, batches) - batches;
-  (counted_ ? repeated_batches_ : recounted_batches_) += repeated;
-  begun_batches_ = 0;
-}
+std::size_t ConversionJournal::point_files() const { return point_files_of(options_.output); }
 
 std::vector<File> ConversionJournal::open_points(std::size_t files) {
-  const bool is_new = files_ == 0;
-  if (is_new) {
-    files_ = files;
-    keep(kPointFiles, [&](JournalValues& values) {
-      std::uint64_t number = files;
-      values.add(number);
-    });
-    remove_points_from(0);
+  if (finished_ == ConversionPhase::kDistributed) {
+    files = point_files();
+  } else {
+    remove_points();
   }
   std::vector<File> opened;
-  for (std::size_t i = 0; i < files_; ++i) {
-    const fs::path path = points_path(i);
+  for (std::size_t i = 0; i < files; ++i) {
+    const fs::path path = points_of(options_.output, i);
     refuse_other_file(path, has_points_magic(path));
     const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (descriptor < 0) throw system_failure(path.string() + ": cannot create", errno);
@@ -608,163 +451,7 @@ std::vector<File> ConversionJournal::open_points(std::size_t files) {
   return opened;
 }
 
-void ConversionJournal::cut_batches(std::size_t batches) {
-  if (batches == batches_.size()) return;
-  std::uint64_t number = batches;
-  keep(kCutBatches, [&](JournalValues& values) { values.add(number); });
-  batches_.resize(batches);
-  places_of_batches_.resize(batches);
-  distributed_records_ = batches_.empty() ? 0 : batches_.back().counts.input_points;
-  distributed_.reset();
-  take_last_hashes();
-}
-
-/// Reads the hashes of the last batch, because a distribution goes on from them.
-void ConversionJournal::take_last_hashes() {
-  if (batches_.empty()) return;
-  take(places_of_batches_.back(), [this](JournalValues& values) { values.add(batches_.back()); });
-}
-
-void ConversionJournal::forget_batches() {
-  batches_ = {};
-  places_of_batches_ = {};
-}
-
-std::uint64_t ConversionJournal::bytes_of_batches() const {
-  constexpr std::uint64_t kFirst =
-      sizeof(std::uint64_t);  // the index of the first point of a group
-  std::uint64_t bytes = batches_.capacity() * sizeof(DistributedBatch) +
-                        places_of_batches_.capacity() * sizeof(Place);
-  for (const DistributedBatch& batch : batches_) {
-    bytes += batch.groups.capacity() * (sizeof(DistributedBatch::Group) + kFirst) +
-             batch.withheld_cubes.capacity() * sizeof(MetreCube);
-  }
-  return bytes;
-}
-
-void ConversionJournal::keep_batch(DistributedBatch& batch) {
-  keep(kBatch, [&](JournalValues& values) { values.add(batch); });
-  distributed_records_ = batch.counts.input_points;
-}
-
-void ConversionJournal::take_distributed(const std::function<void(JournalValues&)>& use) {
-  take(distributed_, use);
-  forget_batches();
-}
-
-void ConversionJournal::keep_distributed(const std::function<void(JournalValues&)>& what) {
-  keep(kDistributed, what);
-  distributed_ = 0;
-  forget_batches();
-}
-
-void ConversionJournal::for_each_unit(
-    const std::function<void(std::vector<WrittenCell>&)>& use) const {
-  if (units_.empty()) return;
-  Place at = 0;
-  auto next = units_.begin();
-  read_->for_each([&](JournalPayload payload) {
-    if (next == units_.end() || at++ != *next) return;
-    ++next;
-    payload.take<std::uint8_t>();
-    std::vector<WrittenCell> cells;
-    JournalValues(payload).add(cells);
-    use(cells);
-  });
-}
-
-void ConversionJournal::check_units() {
-  const bool is_aside = is_file(aside_path());
-  if (units_.empty()) {
-    if (is_aside) remove_file(aside_path());
-    repeated_units_ = begun_units_;
-    return;
-  }
-  if (is_aside && fs::file_size(aside_path()) >= written_bytes_) {
-    written_.emplace(File::open_for_reading(aside_path()));
-  } else {
-    written_.emplace(pending_.set_aside(aside_path()));
-  }
-  const std::uint64_t size = written_->size_bytes();
-  std::size_t whole = 0;
-  bool all_whole = true;
-  written_cells_ = 0;
-  for_each_unit([&](std::vector<WrittenCell>& cells) {
-    std::atomic<bool> is_whole = all_whole;
-    for_each_parallel(cells.size(), [&](std::size_t i) {
-      std::vector<std::byte> bytes;
-      for (const ChunkPlace& chunk : cells[i].chunks) {
-        if (is_whole && !read_chunk(*written_, size, chunk, bytes)) is_whole = false;
-      }
-    });
-    all_whole = is_whole;
-    if (!all_whole) return;
-    ++whole;
-    written_cells_ += cells.size();
-  });
-  if (begun_units_ > whole) repeated_units_ = begun_units_ - whole;
-  if (whole == units_.size()) return;
-  std::uint64_t number = whole;
-  keep(kCutUnits, [&](JournalValues& values) { values.add(number); });
-  units_.resize(whole);
-}
-
-void ConversionJournal::for_each_cell(const StoreMetadata& metadata,
-                                      const std::function<void(const PackedCell&)>& use) {
-  if (!written_) return;
-  const std::uint64_t size = written_->size_bytes();
-  std::vector<PackedColumn PackedCell::*> columns;
-  if (metadata.classes) columns.push_back(&PackedCell::classes);
-  if (metadata.origins) columns.push_back(&PackedCell::origins);
-  for_each_unit([&](std::vector<WrittenCell>& cells) {
-    for (WrittenCell& cell : cells) {
-      PackedCell packed;
-      packed.cell = cell.cell;
-      packed.blocks = std::move(cell.blocks);
-      if (cell.chunks.size() != packed.chunks.size() + columns.size()) {
-        throw InputError(path_.string() + ": holds cells of another store");
-      }
-      for (std::size_t i = 0; i < cell.chunks.size(); ++i) {
-        const ChunkPlace& place = cell.chunks[i];
-        std::vector<std::byte> bytes;
-        if (!read_chunk(*written_, size, place, bytes)) {
-          throw ResourceError(written_->name() + ": changed while it was read");
-        }
-        if (i < packed.chunks.size()) {
-          packed.chunks[i] = std::move(bytes);
-          packed.xxh64[i] = place.xxh64;
-        } else {
-          packed.*columns[i - packed.chunks.size()] = {std::move(bytes), place.xxh64};
-        }
-      }
-      use(packed);
-    }
-  });
-  written_.reset();
-  remove_file(aside_path());
-}
-
-void ConversionJournal::begin_unit(std::uint64_t number) {
-  keep(kBegunUnit, [&](JournalValues& values) { values.add(number); });
-}
-
-void ConversionJournal::keep_unit(std::vector<WrittenCell>& cells) {
-  keep(kUnit, [&](JournalValues& values) { values.add(cells); });
-  written_cells_ += cells.size();
-  units_.push_back(0);
-}
-
-fs::path ConversionJournal::points_path(std::size_t file) const {
-  return points_of(options_.output, file);
-}
-
-fs::path ConversionJournal::aside_path() const { return aside_of(options_.output); }
-
-void ConversionJournal::remove_points_from(std::size_t file) {
-  remove_points_of(options_.output, file);
-}
-
-void ConversionJournal::remove_points() { remove_points_from(0); }
+void ConversionJournal::remove_points() { remove_points_of(options_.output); }
 
 void ConversionJournal::remove_after_publication() {
   if (!writer_->file().is_at(path_)) return;
@@ -776,29 +463,20 @@ void ConversionJournal::remove_after_publication() {
 }
 
 void ConversionJournal::leave() {
-  if (!has_work()) return discard();
-  std::uint64_t bytes = 0;
-  const auto add = [&bytes](const fs::path& path) {
-    std::error_code unknown;
-    if (is_file(path)) bytes += fs::file_size(path, unknown);
-  };
-  // While units are copied from the file that was set aside, the other one is of no use.
-  const bool is_aside = is_file(aside_path());
-  if (!units_.empty() && !is_aside) pending_.keep(true);
-  for (std::size_t i = 0; i < files_; ++i) add(points_path(i));
-  for (const fs::path& path : {path_, aside_path(), pending_.partial()}) add(path);
-  std::string files = path_.filename().string();
-  if (files_ > 0) files += ", " + points_path(0).filename().string();
-  if (files_ > 1) files += " to " + std::to_string(files_);
-  if (is_aside) files += ", " + aside_path().filename().string();
-  if (!units_.empty() && !is_aside) files += ", " + pending_.partial().filename().string();
-  log_.note(options_.output.string() + ": is not finished; " + work_text() +
-            ". --resume goes on from there with " + files + " (" + format_size(bytes) +
+  if (!finished_) return discard();
+  const std::size_t files = point_files();
+  std::uint64_t bytes = fs::file_size(path_);
+  for (std::size_t i = 0; i < files; ++i) bytes += fs::file_size(points_of(options_.output, i));
+  std::string names = path_.filename().string();
+  if (files > 0) names += ", " + points_of(options_.output, 0).filename().string();
+  if (files > 1) names += " to " + std::to_string(files);
+  log_.note(options_.output.string() + ": is not finished; " + in_words(*finished_) +
+            ". --resume goes on from there with " + names + " (" + format_size(bytes) +
             "), and --force removes these files");
 }
 
 void ConversionJournal::discard() {
-  remove_work_of(options_.output);
+  remove_points();
   if (writer_->file().is_at(path_)) remove_file(path_);
 }
 

@@ -65,42 +65,27 @@ struct UnitInFlight {
   std::optional<OrderedUnit> rest;
 };
 
-/// journal: receives the unit once it is written; or null.
-void write_unit(UnitInFlight& unit, StoreWriter& writer, ConversionJournal* journal,
-                StageClocks& clocks, Progress& progress) {
-  std::vector<WrittenCell> written;
+void write_unit(UnitInFlight& unit, StoreWriter& writer, StageClocks& clocks, Progress& progress) {
   while (!unit.packed.empty()) {
-    for (PackedCell& cell : unit.packed) {
+    for (const PackedCell& cell : unit.packed) {
       throw_if_stopped(progress);
       const auto running = clocks.measure(Stage::kWrite);
-      std::vector<ChunkPlace> places = writer.append(cell);
+      writer.append(cell);
       progress.advance(cell.cell.count);
-      if (journal == nullptr) continue;
-      written.push_back({cell.cell, std::move(cell.blocks), std::move(places)});
     }
     unit.packed.clear();
     if (unit.rest) unit.packed = unit.rest->pack_next();
   }
-  if (journal != nullptr) journal->keep_unit(written);
 }
 
 /// Partitions and packs the units, several at a time as memory allows, and writes their cells in
-/// order. journal: holds the units that an earlier process wrote, which are copied, and receives
-/// the others; or null.
+/// order.
 void write_cells(Distribution& distribution, const SplitTree& tree, const Lattice& lattice,
                  const StoreMetadata& metadata, const OriginTable* origins,
-                 std::size_t units_in_flight, StoreWriter& writer, ConversionJournal* journal,
-                 StageClocks& clocks, Progress& progress) {
+                 std::size_t units_in_flight, StoreWriter& writer, StageClocks& clocks,
+                 Progress& progress) {
   progress.begin("partition", metadata.point_count, "points");
   std::size_t next = 0;
-  if (journal != nullptr) {
-    next = journal->units();
-    journal->for_each_cell(metadata, [&](const PackedCell& cell) {
-      throw_if_stopped(progress);
-      writer.append(cell);
-      progress.advance(cell.cell.count);
-    });
-  }
   std::size_t largest = 0;
   for (std::size_t unit = 0; unit < distribution.units(); ++unit) {
     largest = std::max<std::size_t>(largest, distribution.points(unit));
@@ -111,11 +96,7 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   const SerialStage input, output;
   const auto number_of_next = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
-    if (next == tree.units().size()) {
-      flow.stop();
-    } else if (journal != nullptr) {
-      journal->begin_unit(next + 1);
-    }
+    if (next == tree.units().size()) flow.stop();
     return next++;
   });
   const auto order_and_pack = piece_of(scope, [&](std::size_t unit) {
@@ -125,9 +106,8 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
     if (flying->rest->cells_left() == 0) flying->rest.reset();
     return flying;
   });
-  const auto write = piece_of(scope, output, [&](const Flying& unit) {
-    write_unit(*unit, writer, journal, clocks, progress);
-  });
+  const auto write = piece_of(
+      scope, output, [&](const Flying& unit) { write_unit(*unit, writer, clocks, progress); });
   scope.begin();
   tbb::parallel_pipeline(
       units_in_flight,
@@ -312,9 +292,13 @@ class Conversion {
 
  private:
   ConversionReport convert() {
+    FoundInputs found;
+    const bool were_found = take(ConversionPhase::kInspected, found);
     EnvironmentSource environment(options_.inputs, environment_options(), progress_,
-                                  journal_ ? journal_->found() : nullptr);
-    if (journal_) journal_->keep_found(environment.found());
+                                  were_found ? &found : nullptr);
+    found = environment.found();
+    const bool were_read = found.chosen || !found.readable.skipped.empty();
+    if (journal_ && were_read && !were_found) keep(ConversionPhase::kInspected, found);
     refuse_overwriting(options_.output, environment.read_files());
     for (const auto& given : {options_.origins, options_.origins_path, options_.near}) {
       if (!given.empty()) refuse_overwriting(options_.output, {given});
@@ -356,15 +340,14 @@ class Conversion {
                                                 metres > 0 ? 1 / metres : 1));
     Distribution distribution(tree, point_files(tree.units().size()),
                               journal_ ? ConversionJournal::kPointsBegin : 0);
-    if (journal() != nullptr) resume_distribution(distribution, places);
-    if (journal() == nullptr || !journal_->is_distributed()) {
+    if (!take_distributed(distribution, places)) {
       progress_.begin("distribute", counted.points, "points");
       distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-                 clocks_, progress_, origins_, &withheld_, journal());
+                 clocks_, progress_, origins_, &withheld_);
       progress_.end();
       environment.refuse_changed();  // so that the sources' hashes are those of what was converted
+      keep_distributed(environment, distribution, places);
     }
-    keep_distributed(environment, places);
     report_.temporary_bytes = distribution.temporary_bytes();
     warn_of_places(environment, places, counted.points, log_);
     record_steps(places.steps());
@@ -405,10 +388,7 @@ class Conversion {
   /// the end of it.
   bool take_counted(EnvironmentSource& environment, OriginTable& origins, Counted& all) {
     ReadState read;
-    const bool found = journal_ && journal_->take_counted([&](JournalValues& values) {
-      values.add(all, origins, read);
-    });
-    if (!found) return false;
+    if (!take(ConversionPhase::kCounted, all, origins, read)) return false;
     environment.restore(read);
     environment.leave_out_times();
     return true;
@@ -437,7 +417,7 @@ class Conversion {
     InputSurvey survey{PlaceSample(environment.quantisation()), {}};
     all.environment =
         count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_,
-                          path ? &*path : nullptr, journal_ ? &*journal_ : nullptr);
+                          path ? &*path : nullptr);
     all.sources = others.get(hashes.finish());
     all.boxes.take(survey.boxes);
     all.suspects = survey.places.suspects();
@@ -454,11 +434,22 @@ class Conversion {
     if (!journal_) return;
     environment.refuse_changed();  // so that nothing is kept of what is not in the files now
     ReadState read = environment.state();
-    journal_->keep_counted([&](JournalValues& values) { values.add(all, origins, read); });
+    keep(ConversionPhase::kCounted, all, origins, read);
   }
 
-  /// The journal of what comes after the counting; null where the points wait in memory.
-  ConversionJournal* journal() { return journal_ && !in_memory_ ? &*journal_ : nullptr; }
+  /// Takes values from the journal, in the order in which keep() put them there; returns false
+  /// where no earlier process finished the phase.
+  template <typename... Values>
+  bool take(ConversionPhase phase, Values&... values) {
+    const auto use = [&](JournalValues& from) { from.add(values...); };
+    if (!journal_ || !journal_->take(phase, use)) return false;
+    report_.resumed_from = in_words(phase);
+    return true;
+  }
+  template <typename... Values>
+  void keep(ConversionPhase phase, Values&... values) {
+    journal_->keep(phase, [&](JournalValues& to) { to.add(values...); });
+  }
 
   /// The files in which points wait; none where they wait in memory.
   std::vector<File> point_files(std::size_t units) {
@@ -470,35 +461,36 @@ class Conversion {
     return files;
   }
 
-  /// Takes from the journal and the files of points what an earlier process distributed, as far as
-  /// it is whole.
-  void resume_distribution(const Distribution& distribution, PlaceCounter& places) {
-    journal_->check_units();
-    const std::vector<DistributedBatch>& batches = journal_->batches();
-    const std::size_t first_unit = journal_->is_distributed() ? journal_->units() : 0;
-    journal_->cut_batches(count_whole(distribution, batches, first_unit));
-    if (!batches.empty()) report_.resumed_points = batches.back().counts.input_points;
-    report_.resumed_cells = journal_->written_cells();
-    if (journal_->is_distributed()) return;
-    count_places(distribution, places, origins_, journal_->batches());
+  /// Takes from the journal what an earlier process knew once all points were distributed; returns
+  /// false where it had not come to that, or where the files of points do not hold them.
+  bool take_distributed(Distribution& distribution, PlaceCounter& places) {
+    std::vector<std::uint64_t> sums;
+    if (in_memory_ || !take(ConversionPhase::kDistributed, sums)) return false;
+    if (!distribution.take_over(sums)) {
+      log_.note(
+          "the temporary files do not hold the points that were written into them, so that the "
+          "points are distributed again");
+      report_.resumed_from = in_words(ConversionPhase::kCounted);
+      return false;
+    }
+    std::vector<std::uint64_t> counts;
+    std::vector<MetreCube> cubes;
+    take(ConversionPhase::kDistributed, sums, places, counts, cubes, report_.largest_change);
+    if (origins_ != nullptr) origins_->set_counts(counts);
+    if (report_.metadata.withheld) report_.metadata.withheld->cubes = std::move(cubes);
+    return true;
   }
 
-  void keep_distributed(const EnvironmentSource& environment, PlaceCounter& places) {
+  void keep_distributed(const EnvironmentSource& environment, const Distribution& distribution,
+                        PlaceCounter& places) {
     std::vector<MetreCube> cubes = withheld_.take();
-    std::vector<std::uint64_t> counts;
-    if (origins_ != nullptr) counts = origins_->counts();
-    double largest_change = environment.largest_change();
-    const auto values_of = [&](JournalValues& values) {
-      values.add(places, counts, cubes, largest_change);
-    };
-    if (journal() != nullptr && journal_->is_distributed()) {
-      journal_->take_distributed(values_of);
-      if (origins_ != nullptr) origins_->set_counts(counts);
-    } else if (journal() != nullptr) {
-      journal_->keep_distributed(values_of);
+    report_.largest_change = environment.largest_change();
+    if (journal_ && !in_memory_) {
+      std::vector<std::uint64_t> sums = distribution.sums(), counts;
+      if (origins_ != nullptr) counts = origins_->counts();
+      keep(ConversionPhase::kDistributed, sums, places, counts, cubes, report_.largest_change);
     }
     if (report_.metadata.withheld) report_.metadata.withheld->cubes = std::move(cubes);
-    report_.largest_change = largest_change;
   }
 
   /// Describes the corridor in the store, once all points were counted.
@@ -616,9 +608,7 @@ class Conversion {
                                   (origins_ != nullptr ? kColumnCellBytes : 0);
     const std::uint64_t of_origins = origins_ != nullptr ? origins_->allocated_bytes() : 0;
     const std::uint64_t others = kBaseBytes + report_.cells * of_cell + of_origins;
-    // No unit is loaded before the batches of the journal are forgotten.
-    const std::uint64_t of_batches = journal_ ? journal_->bytes_of_batches() : 0;
-    const std::uint64_t least = others + std::max(of_unit(), of_batches);
+    const std::uint64_t least = others + of_unit();
     if (options_.memory_bytes < least) {
       throw ResourceError(format_size(options_.memory_bytes) +
                               " of memory is too little: " + std::to_string(report_.cells) +
@@ -640,7 +630,7 @@ class Conversion {
     const std::uint64_t padded = std::max(points, report_.cells * options_.cell_points);
     const bool may_be_in_memory = bytes_for_units() >= waiting + units_in_flight_ * of_unit() &&
                                   waiting <= most_waiting_bytes();
-    const bool has_points = journal_ && journal_->has_points();
+    const bool has_points = journal_ && journal_->point_files() > 0;
     const DiskNeed need{points, padded, has_points ? 0 : points};
     in_memory_ =
         may_be_in_memory && !has_points && (!journal_ || bytes_of(need) > free_disk_bytes(folder_));
@@ -665,9 +655,8 @@ class Conversion {
                    const std::vector<TopNode>& top, const Lattice& lattice) {
     StoreWriter writer(output_.partial(), report_.metadata, report_.cells);
     write_cells(distribution, tree, lattice, report_.metadata, origins_, units_in_flight_, writer,
-                journal(), clocks_, progress_);
+                clocks_, progress_);
     report_.partition_seconds = watch_.lap();
-    // A resumption needs the points no more either, as the journal has all units.
     auto closed = std::async(kBeside, [&] {
       if (journal_) journal_->remove_points();
       in_threads(threads_, [&] { distribution.close_files(); });
@@ -687,12 +676,7 @@ class Conversion {
     synced.get();
     closed.get();
     output_.publish();
-    if (journal_) {
-      journal_->remove_after_publication();
-      report_.recounted_batches = journal_->recounted_batches();
-      report_.repeated_batches = journal_->repeated_batches();
-      report_.repeated_buckets = journal_->repeated_units();
-    }
+    if (journal_) journal_->remove_after_publication();
     report_.output_bytes = std::filesystem::file_size(options_.output);
     report_.confirm_seconds = watch_.lap();
     report_.busy_seconds = clocks_.seconds();

@@ -18,9 +18,6 @@ inline constexpr std::uint64_t kLeastConversionMemory = std::uint64_t{224} << 20
 struct ConversionOptions : ConvertOptions {
   std::vector<std::filesystem::path> inputs;  ///< files and folders, or "-" alone
   std::filesystem::path output;
-  /// Least seconds from one keeping of what was counted in the journal to the next; 0: kept after
-  /// every batch.
-  double counted_interval_seconds = 0.25;
   /// Called after each record of the journal; for tests.
   std::function<void()> journalled = nullptr;
 };

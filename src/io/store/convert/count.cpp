@@ -8,7 +8,6 @@
 
 #include "clearway/error.hpp"
 #include "io/files/parallel_loop.hpp"
-#include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/path_origins.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
@@ -39,11 +38,6 @@ class ClassCounts {
   }
   const std::array<std::uint64_t, 256>& points() const { return points_; }
 
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(points_);
-  }
-
  private:
   std::array<std::uint64_t, 256> points_{};
 };
@@ -54,63 +48,7 @@ struct PassSums {
   ClassesHash classes_hash = {};
   ClassCounts classes = {};
   std::uint64_t points = 0;
-
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(points_hash, classes_hash, classes, points);
-  }
 };
-
-/// The counting pass, as far as it has come.
-struct CountingPass {
-  EnvironmentSource& environment;
-  int threads;
-  FileHashes& files;
-  StageClocks& clocks;
-  ConversionJournal* journal;  ///< or null
-  bool is_kept;                ///< whether the journal keeps what is counted before the end
-  std::uint64_t batches = 0;
-
-  /// Where the journal wants to know how far the counting is, no more batches are taken.
-  EnvironmentPass until_due(const Progress& progress, bool& paused) {
-    BatchWatch watch;
-    paused = false;
-    if (journal != nullptr) {
-      watch.begun = [this] { journal->begin_batch(++batches); };
-    }
-    if (is_kept) {
-      watch.pauses = [this, &paused, first = batches] {
-        return paused = batches > first && journal->wants_counted();
-      };
-    }
-    return {environment, threads, &files, clocks, progress, watch};
-  }
-};
-
-void count_batches(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
-                   InputSurvey& survey, PathOrigins* path, Progress& progress,
-                   tbb::enumerable_thread_specific<ClassCounts>& classes,
-                   tbb::enumerable_thread_specific<BinCounter>& counters) {
-  for_each_batch<PathOrigins::OfBatch>(
-      pass,
-      [&](const QuantaBatch& batch) {
-        const auto running = pass.clocks().measure(Stage::kCount);
-        survey.boxes.add(batch);
-        BinCounter& counter = counters.local();
-        for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
-        classes.local().add(batch);
-        progress.advance(batch.quanta.size());
-        return path ? path->origins_of(batch) : PathOrigins::OfBatch();
-      },
-      [&](const QuantaBatch& batch, const PathOrigins::OfBatch& origins) {
-        if (path) path->add(batch, origins);
-        sums.points_hash.add(batch);
-        sums.classes_hash.add(batch);
-        survey.places.add(batch);
-        sums.points += batch.quanta.size();
-      },
-      [](const PathOrigins::OfBatch&) {}, [](const PathOrigins::OfBatch&) {});
-}
 
 /// Moves what the threads have counted to one counter, which is returned. Pairs are merged in
 /// parallel, because a merge goes through all slots of a counter.
@@ -130,34 +68,31 @@ BinCounter& gather(tbb::enumerable_thread_specific<BinCounter>& counters) {
   return *all.front();
 }
 
-std::vector<Bin> count_bins(CountingPass& counting, const Lattice& lattice, PassSums& sums,
+std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
                             InputSurvey& survey, PathOrigins* path, Progress& progress) {
   tbb::enumerable_thread_specific<ClassCounts> classes;
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
-  const auto keep = [&](JournalValues& values, BinCounter& bins, ReadState& read) {
-    values.add(counting.batches, sums, survey, bins, counting.files, read);
-  };
-  if (counting.is_kept) {
-    ReadState read;
-    const bool found = counting.journal->take_counted_part(
-        [&](JournalValues& values) { keep(values, counters.local(), read); });
-    if (found) {
-      counting.environment.restore(read);
-      counting.environment.go_on_from(read.position, read.counts);
-      progress.advance(sums.points);
-    }
-  }
-  if (counting.journal != nullptr) counting.journal->go_on_after_batches(counting.batches);
-  for (bool paused = true; paused;) {
-    count_batches(counting.until_due(progress, paused), lattice, sums, survey, path, progress,
-                  classes, counters);
-    for (ClassCounts& counts : classes) sums.classes.merge(std::exchange(counts, {}));
-    if (!paused) break;
-    BinCounter& bins = gather(counters);
-    ReadState read = counting.environment.state();
-    counting.journal->keep_counted_part([&](JournalValues& values) { keep(values, bins, read); });
-  }
+  for_each_batch<PathOrigins::OfBatch>(
+      pass,
+      [&](const QuantaBatch& batch) {
+        const auto running = pass.clocks().measure(Stage::kCount);
+        survey.boxes.add(batch);
+        BinCounter& counter = counters.local();
+        for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
+        classes.local().add(batch);
+        progress.advance(batch.quanta.size());
+        return path ? path->origins_of(batch) : PathOrigins::OfBatch();
+      },
+      [&](const QuantaBatch& batch, const PathOrigins::OfBatch& origins) {
+        if (path) path->add(batch, origins);
+        sums.points_hash.add(batch);
+        sums.classes_hash.add(batch);
+        survey.places.add(batch);
+        sums.points += batch.quanta.size();
+      },
+      [](const PathOrigins::OfBatch&) {});
+  for (const ClassCounts& counts : classes) sums.classes.merge(counts);
   const BinCounter& all = gather(counters);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
     throw UsageError("a regular layout: more than " + std::to_string(kMostBins) +
@@ -235,7 +170,7 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
         progress.advance(batch.quanta.size());
         return Nothing();
       },
-      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {}, [](Nothing&) {});
+      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {});
   Refinement all(tree.overfull());
   for (const Refinement& counter : counters) all.merge(counter);
   std::erase_if(bins, [](const Bin& bin) { return bin.count > kBucketPoints; });
@@ -248,16 +183,13 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress, PathOrigins* path,
-                                     ConversionJournal* journal) {
+                                     StageClocks& clocks, Progress& progress, PathOrigins* path) {
   CountedEnvironment counted;
   PassSums sums{PointsHash(environment.quantisation())};
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  // The journal does not keep the places on a path that were found so far.
-  CountingPass counting{environment, threads, files,
-                        clocks,      journal, journal != nullptr && path == nullptr};
-  counted.bins = count_bins(counting, lattice, sums, survey, path, progress);
+  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey,
+                            path, progress);
   environment.leave_out_times();
   counted.points = sums.points;
   counted.input_points = environment.input_points();

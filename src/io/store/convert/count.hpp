@@ -15,18 +15,12 @@
 
 namespace clearway {
 
-class ConversionJournal;
 class PathOrigins;
 
 /// Observations of the counting pass that serve warnings.
 struct InputSurvey {
   PlaceSample places;
   FileBoxes boxes;
-
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(places, boxes);
-  }
 };
 
 /// Hashes that show whether a later pass reads the same points.
@@ -53,12 +47,10 @@ struct CountedEnvironment {
 };
 
 /// Performs the counting pass, which also hashes the files, and further passes while a bin is too
-/// full (docs/design/conversion.md). path: finds the origins of the points, or is null. journal:
-/// holds what an earlier process counted, and receives what is counted now and then; or null.
+/// full (docs/design/conversion.md). path: finds the origins of the points, or is null.
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
                                      InputSurvey& survey, FileHashes& files, int threads,
                                      StageClocks& clocks, Progress& progress,
-                                     PathOrigins* path = nullptr,
-                                     ConversionJournal* journal = nullptr);
+                                     PathOrigins* path = nullptr);
 
 }  // namespace clearway

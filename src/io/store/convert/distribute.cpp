@@ -9,14 +9,35 @@
 
 #include "clearway/error.hpp"
 #include "io/files/parallel_loop.hpp"
-#include "io/files/xxh64.hpp"
-#include "io/store/convert/conversion_journal.hpp"
 #include "io/store/convert/origin_table.hpp"
 #include "io/store/convert/points_hash.hpp"
 #include "io/store/convert/read_points.hpp"
 #include "io/store/convert/withheld_cubes.hpp"
 
 namespace clearway {
+namespace {
+
+/// The sum of a 64-bit mix of each point, which does not depend on their order. A file of which the
+/// system has lost a part, or in which bytes have changed, has another one.
+std::uint64_t sum_of(std::span<const DistributedPoint> points) {
+  std::uint64_t sum = 0;
+  for (const DistributedPoint& point : points) {
+    std::uint64_t mix = 0x9E3779B97F4A7C15;
+    const auto add = [&mix](std::uint64_t value) {
+      mix = (mix ^ value) * 0xBF58476D1CE4E5B9;
+      mix ^= mix >> 31;
+    };
+    add(static_cast<std::uint32_t>(point.q[0]) |
+        std::uint64_t{static_cast<std::uint32_t>(point.q[1])} << 32);
+    add(static_cast<std::uint32_t>(point.q[2]) | std::uint64_t{point.source[0]} << 32);
+    add(point.source[1]);
+    sum += mix;
+  }
+  return sum;
+}
+
+}  // namespace
+
 Distribution::Distribution(const SplitTree& tree, std::vector<File> files, std::uint64_t first_byte)
     : files_(std::move(files)) {
   for (const std::uint32_t node : tree.units()) counts_.push_back(tree.nodes()[node].count);
@@ -24,6 +45,7 @@ Distribution::Distribution(const SplitTree& tree, std::vector<File> files, std::
     for (const std::uint64_t count : counts_) memory_.emplace_back(count);
     return;
   }
+  sums_.resize(units());
   std::vector<std::uint64_t> ends(files_.size(), first_byte);
   for (std::size_t unit = 0; unit < units(); ++unit) {
     const std::size_t file = unit % files_.size();
@@ -43,19 +65,38 @@ void Distribution::put(std::size_t unit, std::uint64_t first,
   }
   const auto& [file, byte] = places_[unit];
   files_[file].write_at(byte + first * sizeof(DistributedPoint), std::as_bytes(points));
+  std::atomic_ref(sums_[unit]).fetch_add(sum_of(points), std::memory_order_relaxed);
 }
 
-void Distribution::get(std::size_t unit, std::uint64_t first,
-                       std::span<DistributedPoint> points) const {
+/// The points of a unit as its file has them; nullopt where these do not have the sum.
+std::optional<UnitPoints> Distribution::points_in_file(std::size_t unit, std::uint64_t sum) const {
   const auto& [file, byte] = places_[unit];
-  files_[file].read_at(byte + first * sizeof(DistributedPoint), std::as_writable_bytes(points));
+  const std::uint64_t bytes = counts_[unit] * sizeof(DistributedPoint);
+  if (byte + bytes > files_[file].size_bytes()) return std::nullopt;
+  UnitPoints points(std::make_unique<MappedFile>(files_[file], byte, bytes));
+  if (sum_of(points.span()) != sum) return std::nullopt;
+  return points;
+}
+
+bool Distribution::take_over(std::vector<std::uint64_t> sums) {
+  if (files_.empty() || sums.size() != units()) return false;
+  std::atomic<bool> whole = true;
+  for_each_parallel(units(), [&](std::size_t unit) {
+    if (whole && !points_in_file(unit, sums[unit])) whole = false;
+  });
+  if (whole) sums_ = std::move(sums);
+  return whole;
 }
 
 UnitPoints Distribution::take(std::size_t unit) {
   if (files_.empty()) return std::move(memory_[unit]);
-  const auto& [file, byte] = places_[unit];
-  return UnitPoints(
-      std::make_unique<MappedFile>(files_[file], byte, counts_[unit] * sizeof(DistributedPoint)));
+  std::optional<UnitPoints> points = points_in_file(unit, sums_[unit]);
+  if (!points) {
+    throw ResourceError(files_[places_[unit].file].name() +
+                            ": does not hold the points that were written into it",
+                        Remedy::kResume);
+  }
+  return std::move(*points);
 }
 
 void Distribution::close_files() {
@@ -74,7 +115,6 @@ struct GroupedBatch {
   };
   std::vector<DistributedPoint> points;
   std::vector<Group> groups;
-  DistributedBatch kept;  ///< what the journal is to keep of it
 };
 
 class Grouper {
@@ -128,15 +168,6 @@ class Places {
     }
   }
 
-  /// Takes the places of a batch that is distributed already.
-  void pass_over(const DistributedBatch& batch) {
-    for (const auto& group : batch.groups) next_[group.unit] += group.points;
-  }
-
-  std::uint64_t placed() const {
-    return std::accumulate(next_.begin(), next_.end(), std::uint64_t{0});
-  }
-
   void finish() const {
     for (std::size_t unit = 0; unit < next_.size(); ++unit) {
       if (next_[unit] != distribution_.points(unit)) refuse_change(environment_);
@@ -151,98 +182,18 @@ class Places {
 
 }  // namespace
 
-std::size_t count_whole(const Distribution& distribution, std::span<const DistributedBatch> batches,
-                        std::size_t first_unit) {
-  std::vector<std::vector<std::uint64_t>> firsts;
-  std::vector<std::uint64_t> next(distribution.units());
-  const auto fits = [&](const DistributedBatch::Group& group) {
-    return group.unit < distribution.units() &&
-           next[group.unit] + group.points <= distribution.points(group.unit);
-  };
-  for (const DistributedBatch& batch : batches) {
-    std::vector<std::uint64_t> of_batch;
-    for (const DistributedBatch::Group& group : batch.groups) {
-      if (!fits(group)) break;
-      of_batch.push_back(next[group.unit]);
-      next[group.unit] += group.points;
-    }
-    if (of_batch.size() < batch.groups.size()) break;
-    firsts.push_back(std::move(of_batch));
-  }
-  std::atomic<std::size_t> whole = firsts.size();
-  for_each_parallel(firsts.size(), [&](std::size_t i) {
-    if (i >= whole) return;
-    std::vector<DistributedPoint> points;
-    for (std::size_t k = 0; k < batches[i].groups.size(); ++k) {
-      const DistributedBatch::Group& group = batches[i].groups[k];
-      if (group.unit < first_unit) continue;
-      points.resize(group.points);
-      distribution.get(group.unit, firsts[i][k], points);
-      if (xxh64(std::as_bytes(std::span(points))) == group.hash) continue;
-      std::size_t least = whole;
-      while (i < least && !whole.compare_exchange_weak(least, i)) {
-      }
-      return;
-    }
-  });
-  return whole;
-}
-
-void count_places(const Distribution& distribution, PlaceCounter& places, OriginTable* origins,
-                  std::span<const DistributedBatch> batches) {
-  if (!places.any() && origins == nullptr) return;
-  std::vector<std::uint64_t> next(distribution.units());
-  std::vector<DistributedPoint> points;
-  for (const DistributedBatch& distributed : batches) {
-    for (const DistributedBatch::Group& group : distributed.groups) {
-      points.resize(group.points);
-      distribution.get(group.unit, next[group.unit], points);
-      next[group.unit] += group.points;
-      if (origins != nullptr) origins->count(points);
-      QuantaBatch batch;
-      batch.first_source = points.front().source_index();
-      for (const DistributedPoint& point : points) {
-        batch.quanta.push_back({point.q[0], point.q[1], point.q[2]});
-        batch.offsets.push_back(
-            static_cast<std::uint32_t>(point.source_index() - batch.first_source));
-      }
-      places.add(batch);
-    }
-  }
-}
-
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
-                OriginTable* origins, WithheldCubes* withheld, ConversionJournal* journal) {
+                OriginTable* origins, WithheldCubes* withheld) {
   const Grouper group(lattice, tree);
   PointsHash hash(environment.quantisation());
   ClassesHash classes;
   bool has_classes = false;
   Places order(environment, distribution);
-  // go_on_from() rewinds, and keeps how many points the files before its place have.
-  if (journal == nullptr || journal->batches().empty()) environment.rewind();
-  const auto keep_hashes = [&](JournalValues values) { values.add(hash, classes, has_classes); };
-  std::uint64_t begun = 0;
-  BatchWatch watch;
-  if (journal != nullptr) {
-    for (const DistributedBatch& batch : journal->batches()) {
-      order.pass_over(batch);
-      if (withheld) withheld->add(batch.withheld_cubes);
-    }
-    begun = journal->batches().size();
-    journal->go_on_after_batches(begun);
-    if (begun > 0) {
-      const DistributedBatch& last = journal->batches().back();
-      JournalPayload payload(last.hashes, "the hashes of the points");
-      keep_hashes(JournalValues(payload));
-      environment.go_on_from(last.position, last.counts);
-      progress.advance(order.placed());
-    }
-    watch.begun = [&] { journal->begin_batch(++begun); };
-  }
+  environment.rewind();
   for_each_batch<GroupedBatch>(
-      {environment, threads, nullptr, clocks, progress, watch},
+      {environment, threads, nullptr, clocks, progress},
       [&](const QuantaBatch& batch) {
         const auto running = clocks.measure(Stage::kGroup);
         places.add(batch);
@@ -255,28 +206,15 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
         order.assign(grouped);
         if (origins) origins->count(batch);
         if (withheld) withheld->add(batch.withheld_cubes);
-        if (journal == nullptr) return;
-        grouped.kept.position = environment.noted_position();
-        grouped.kept.counts = environment.counts();
-        grouped.kept.withheld_cubes = batch.withheld_cubes;
-        JournalRecord hashes;
-        keep_hashes(JournalValues(hashes));
-        const std::span<const std::byte> bytes = hashes.payload();
-        grouped.kept.hashes.assign(bytes.begin(), bytes.end());
       },
       [&](GroupedBatch& grouped) {
         const auto running = clocks.measure(Stage::kDistribute);
         for (const auto& [unit, begin, end, first] : grouped.groups) {
           const auto points = std::span(grouped.points).subspan(begin, end - begin);
           distribution.put(unit, first, points);
-          if (journal == nullptr) continue;
-          grouped.kept.groups.push_back({unit, end - begin, xxh64(std::as_bytes(points))});
         }
         progress.advance(grouped.points.size());
         grouped.points = {};
-      },
-      [&](GroupedBatch& grouped) {
-        if (journal != nullptr) journal->keep_batch(grouped.kept);
       });
   order.finish();
   const bool same_classes =

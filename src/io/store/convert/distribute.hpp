@@ -21,7 +21,6 @@
 
 namespace clearway {
 
-class ConversionJournal;
 class OriginTable;
 class WithheldCubes;
 
@@ -84,10 +83,13 @@ class Distribution {
   /// Stores points of a unit from index `first` on. Several threads may store at different places
   /// at once.
   void put(std::size_t unit, std::uint64_t first, std::span<const DistributedPoint> points);
-  /// Reads points of a unit from index `first` on, where they are in files.
-  void get(std::size_t unit, std::uint64_t first, std::span<DistributedPoint> points) const;
+  /// For each unit whose points are in files, a sum by which these are known again.
+  const std::vector<std::uint64_t>& sums() const { return sums_; }
+  /// Takes over the points that an earlier process stored in the files. Returns false where these
+  /// do not have its sums.
+  bool take_over(std::vector<std::uint64_t> sums);
   /// Takes the points of a unit, once all of them are stored. To be called once per unit; several
-  /// threads may call it at once.
+  /// threads may call it at once. Throws ResourceError where its file does not hold them.
   UnitPoints take(std::size_t unit);
   /// Closes the files, in parallel, because the system frees the memory of those whose names are
   /// gone, a gigabyte in some 0.12 s. No points are left.
@@ -99,53 +101,23 @@ class Distribution {
     std::uint64_t byte;
   };
 
+  std::optional<UnitPoints> points_in_file(std::size_t unit, std::uint64_t sum) const;
+
   std::vector<std::uint64_t> counts_;
+  std::vector<std::uint64_t> sums_;
   std::vector<UnitPoints> memory_;  // points by unit, where they are in memory
   std::vector<File> files_;
   std::vector<Place> places_;  // places of the units in the files
   std::uint64_t temporary_bytes_ = 0;
 };
 
-/// What a journal keeps of a batch once its points are in the files of their units.
-struct DistributedBatch {
-  /// Consecutive points of a unit, and the hash of their bytes.
-  struct Group {
-    std::uint32_t unit;
-    std::uint32_t points;
-    std::uint64_t hash;
-  };
-  std::vector<Group> groups;
-  InputPosition position;  ///< after the batch
-  ReadCounts counts;
-  std::vector<MetreCube> withheld_cubes;
-  /// The hashes of all points so far.
-  std::vector<std::byte> hashes;
-
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(groups, position, counts, withheld_cubes, hashes);
-  }
-};
-
-/// How many of the batches are in the files as they were written. first_unit: units before it do
-/// not count.
-std::size_t count_whole(const Distribution& distribution, std::span<const DistributedBatch> batches,
-                        std::size_t first_unit);
-
-/// Counts the points of these batches at the places, and for the origins unless null, as a
-/// distribution does.
-void count_places(const Distribution& distribution, PlaceCounter& places, OriginTable* origins,
-                  std::span<const DistributedBatch> batches);
-
 /// Performs the distribution pass, which puts every point to those of its unit, in source order.
 /// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
 /// places: counts the points at its places. origins: counts the points of each basis, or is null.
-/// withheld: collects the cubes of points that are left out as withheld, or is null. journal: holds
-/// the batches that an earlier process distributed, and receives those of this one; or null.
+/// withheld: collects the cubes of points that are left out as withheld, or is null.
 void distribute(EnvironmentSource& environment, const CountedHashes& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
-                OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr,
-                ConversionJournal* journal = nullptr);
+                OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr);
 
 }  // namespace clearway

@@ -75,7 +75,7 @@ FoundInputs EnvironmentSource::found() const {
 }
 
 ReadState EnvironmentSource::state() const {
-  ReadState state{{}, points_of_files_, counts_, noted_};
+  ReadState state{{}, points_of_files_, counts_};
   for (const CloudInfo& info : infos_) {
     state.files.push_back({info.remarks, info.origins, info.origins_rest_on});
   }
@@ -91,33 +91,6 @@ void EnvironmentSource::restore(const ReadState& state) {
   }
   points_of_files_ = state.points_of_files;
   counts_ = state.counts;
-  noted_ = state.position;
-}
-
-void EnvironmentSource::go_on_from(const InputPosition& position, const ReadCounts& counts) {
-  std::vector<std::uint64_t> points = points_of_files_;
-  rewind();
-  points.resize(std::min<std::size_t>(points.size(), position.file));
-  points_of_files_ = std::move(points);
-  counts_ = counts;
-  noted_ = position;
-  file_ = position.file;
-  piece_ = position.piece;
-  file_points_ = position.file_points;
-  next_source_ = position.next_source;
-  const bool whole = file_ >= files().size() || piece_ > 0 || file_points_ == 0 ||
-                     (file_ < passed_over_.size() && passed_over_[file_]);
-  if (whole) return;
-  PointBatch passed;
-  std::uint64_t read = 0;
-  while (read < file_points_ && reader(file_)->read(passed)) read += passed.size();
-  if (read != file_points_) refuse(files()[file_].string(), "changed while it was read");
-}
-
-InputPosition EnvironmentSource::position_after(const QuantaBatch& batch) const {
-  const std::uint64_t end = batch.first_source + batch.records;
-  const bool same_file = noted_.file == batch.file;
-  return {batch.file, batch.next_piece, (same_file ? noted_.file_points : 0) + batch.records, end};
 }
 
 EnvironmentSource::~EnvironmentSource() = default;
@@ -219,7 +192,6 @@ void EnvironmentSource::rewind() {
   file_ = piece_ = 0;
   file_points_ = next_source_ = 0;
   counts_ = {};
-  noted_ = {};
   withheld_edge_ = metre_cube_edge(crs_.unit);
   points_of_files_.clear();
   if (stream_) stream_->rewind();
@@ -314,7 +286,6 @@ void EnvironmentSource::note(const QuantaBatch& batch) {
   all.unread_points += batch.unread_points;
   all.unread_bytes += batch.unread_bytes;
   all.largest_change = std::max(all.largest_change, batch.largest_change);
-  noted_ = position_after(batch);
 }
 
 bool EnvironmentSource::read(QuantaBatch& batch) {
@@ -355,13 +326,11 @@ namespace clearway {
 
 void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const {
   if (records.unread > 0) {
-    batch.next_piece = records.reader ? records.piece + 1 : 0;
     if (records.reader) batch.bytes = records.reader->place_of_piece(records.piece);
     return append_unread(records, batch);
   }
   if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
   batch.file = records.file;
-  batch.next_piece = records.reader ? records.piece + 1 : 0;
   batch.first_source = records.first_source;
   batch.records = records.points.size();
   batch.quanta.clear();
@@ -622,10 +591,8 @@ bool EnvironmentPass::next(PassingBatch& batch) {
   if (failed_) return false;
   try {
     throw_if_stopped(progress_);
-    if (watch_.pauses && watch_.pauses()) return false;
     const auto running = clocks_.measure(Stage::kRead);
     if (!environment_.next(batch.records)) return false;
-    if (watch_.begun) watch_.begun();
   } catch (...) {
     batch.error = std::current_exception();
     failed_ = true;

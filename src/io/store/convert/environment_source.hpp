@@ -27,13 +27,6 @@ struct EnvironmentOptions {
   std::filesystem::path temporary_folder = ".";
 };
 
-/// A place in the inputs between two batches.
-struct InputPosition {
-  std::uint64_t file = 0, piece = 0;
-  std::uint64_t file_points = 0;  ///< records of the file before it
-  std::uint64_t next_source = 0;
-};
-
 /// Sums over what was read from the beginning of the inputs on.
 struct ReadCounts {
   std::uint64_t input_points = 0;
@@ -59,7 +52,7 @@ struct FoundInputs {
   }
 };
 
-/// What an EnvironmentSource knows of its inputs after it has read them, or a part of them.
+/// What an EnvironmentSource knows of its inputs after it has read them.
 struct ReadState {
   struct OfFile {
     std::vector<Message> remarks;
@@ -74,11 +67,10 @@ struct ReadState {
   std::vector<OfFile> files;
   std::vector<std::uint64_t> points_of_files;
   ReadCounts counts;
-  InputPosition position;
 
   template <typename Values>
   void keep(Values& values) {
-    values.add(files, points_of_files, counts, position);
+    values.add(files, points_of_files, counts);
   }
 };
 
@@ -136,17 +128,10 @@ class EnvironmentSource {
   void rewind();
 
   FoundInputs found() const;
-  /// What is known now that all batches up to here were noted.
+  /// What is known now that all batches were noted.
   ReadState state() const;
   /// Takes what an earlier process knew.
   void restore(const ReadState& state);
-  /// Begins a pass over the inputs at a place between two batches, with the counts as they were
-  /// there. The files before it must have been read, here or by an earlier process. A file that is
-  /// not read in pieces is read from its first record up to this place.
-  void go_on_from(const InputPosition& position, const ReadCounts& counts);
-  /// The place after the batch that was noted last.
-  const InputPosition& noted_position() const { return noted_; }
-  const ReadCounts& counts() const { return counts_; }
   /// Reads no GPS times from the next rewind() on.
   void leave_out_times() { how_to_read_.with_times = false; }
 
@@ -206,7 +191,6 @@ class EnvironmentSource {
     return corridor_ != nullptr && bounds && !corridor_->may_hold(*bounds);
   }
   bool pass_over(RecordBatch& records);
-  InputPosition position_after(const QuantaBatch& batch) const;
   void append_unread(const RecordBatch& records, QuantaBatch& out) const;
   void check_bounds(const RecordBatch& records, const QuantaBatch& batch) const;
   void count_beyond(QuantaBatch& out) const;
@@ -238,7 +222,6 @@ class EnvironmentSource {
   std::uint64_t next_source_ = 0;
   std::vector<std::uint64_t> points_of_files_;  // points of the files that were read to their end
   ReadCounts counts_;
-  InputPosition noted_;  ///< the place after the batch that was noted last
   bool chose_scale_ = false;
 };
 

@@ -48,13 +48,6 @@ class FileHashes {
   /// piece.
   std::vector<std::optional<SourceFile>> finish();
 
-  /// Keeps what was added, so that add() can go on from there.
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(found_, number_, position_, hash_);
-    if (hash_ && !file_) file_ = File::open_for_reading(files_[number_]);
-  }
-
  private:
   void read_until(std::uint64_t position);
   void end_file();

@@ -168,14 +168,6 @@ void OriginTable::count(const QuantaBatch& batch) {
   }
 }
 
-void OriginTable::count(std::span<const DistributedPoint> points) {
-  std::size_t run = 0;
-  for (const DistributedPoint& point : points) {
-    run = run_of(point.source_index(), run);
-    if (runs_[run].number > 0) ++bases_[runs_[run].basis].points;
-  }
-}
-
 std::vector<std::uint64_t> OriginTable::counts() const {
   std::vector<std::uint64_t> counts;
   for (const OriginBasis& basis : bases_) counts.push_back(basis.points);

@@ -59,8 +59,6 @@ class OriginTable {
   /// where no point has an origin.
   std::optional<StoreOrigins> origins(std::uint64_t points) const;
 
-  /// Counts the next points, which are in source order.
-  void count(std::span<const DistributedPoint> points);
   /// Number of points that were counted for each of what the runs rest on.
   std::vector<std::uint64_t> counts() const;
   void set_counts(const std::vector<std::uint64_t>& counts);

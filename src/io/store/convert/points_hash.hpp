@@ -40,11 +40,6 @@ class PointsHash {
     return xxh64(std::as_bytes(std::span(parts)));
   }
 
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(quanta_, sources_, expected_);
-  }
-
  private:
   Xxh64Stream quanta_;
   Xxh64Stream sources_;
@@ -66,11 +61,6 @@ class ClassesHash {
   std::uint64_t digest() {
     add_zeros();
     return hash_.digest();
-  }
-
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(hash_, zeros_);
   }
 
  private:

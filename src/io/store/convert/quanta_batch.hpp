@@ -67,7 +67,6 @@ struct FileBox {
 /// finite, withheld, or too far from a path.
 struct QuantaBatch {
   std::size_t file = 0;            ///< number of the input that all points belong to
-  std::size_t next_piece = 0;      ///< the piece of the file after the batch; 0 without pieces
   std::uint64_t first_source = 0;  ///< source index of the batch's first input point
   std::vector<std::array<std::int32_t, 3>> quanta;
   /// Source index of each point minus first_source; empty where that is its index in `quanta`.

@@ -43,27 +43,19 @@ struct PassingBatch {
   std::exception_ptr error;
 };
 
-/// What watches the batches that a pass takes, in their order.
-struct BatchWatch {
-  std::function<bool()> pauses = nullptr;  ///< whether no more are taken for now
-  std::function<void()> begun = nullptr;   ///< called after each
-};
-
 /// One reading of the environment, from its current position to its end.
 class EnvironmentPass {
  public:
   /// files: hashes the files that are read in pieces, or is null.
   EnvironmentPass(EnvironmentSource& environment, int threads, FileHashes* files,
-                  StageClocks& clocks, const Progress& progress, BatchWatch watch = {})
+                  StageClocks& clocks, const Progress& progress)
       : environment_(environment),
         threads_(threads),
         files_(files),
         clocks_(clocks),
-        progress_(progress),
-        watch_(std::move(watch)) {}
+        progress_(progress) {}
 
   StageClocks& clocks() const { return clocks_; }
-  /// One for each thread, so that a conversion that is killed does no more of them twice.
   std::size_t batches_in_flight() const { return static_cast<std::size_t>(threads_); }
 
   /// Takes the next batch, in order; returns false at the end.
@@ -92,22 +84,20 @@ class EnvironmentPass {
   FileHashes* files_;
   StageClocks& clocks_;
   const Progress& progress_;
-  BatchWatch watch_;
   bool failed_ = false;
 };
 
 /// Reads batches and calls `work` with each, several threads at a time; then `in_order` with each
 /// batch and the result of `work`, one by one in the order of the points; then `last` with the
-/// result, several threads at a time; then `done` with the result, in order again. Throws
-/// Interrupted when the progress asks to stop.
-template <typename Made, typename Work, typename InOrder, typename Last, typename Done>
-void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last, Done done) {
+/// result, several threads at a time. Throws Interrupted when the progress asks to stop.
+template <typename Made, typename Work, typename InOrder, typename Last>
+void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last) {
   struct Passing : PassingBatch {
     Made made{};
   };
   using Batch = std::shared_ptr<Passing>;
   const ParallelScope scope;
-  const SerialStage input, bytes, order, end;
+  const SerialStage input, bytes, order;
   const auto next = piece_of(scope, input, [&](tbb::flow_control& flow) {
     auto batch = std::make_shared<Passing>();
     if (!pass.next(*batch)) flow.stop();
@@ -127,11 +117,7 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
     in_order(batch->quanta, batch->made);
     return batch;
   });
-  const auto ended = piece_of(scope, [&](const Batch& batch) {
-    last(batch->made);
-    return batch;
-  });
-  const auto all_done = piece_of(scope, end, [&](const Batch& batch) { done(batch->made); });
+  const auto ended = piece_of(scope, [&](const Batch& batch) { last(batch->made); });
   constexpr auto serial = tbb::filter_mode::serial_in_order;
   constexpr auto parallel = tbb::filter_mode::parallel;
   using Step = Handed<Batch>;
@@ -141,8 +127,7 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
                              tbb::make_filter<Step, Step>(parallel, converted) &
                              tbb::make_filter<Step, Step>(serial, hashed) &
                              tbb::make_filter<Step, Step>(serial, noted) &
-                             tbb::make_filter<Step, Step>(parallel, ended) &
-                             tbb::make_filter<Step, void>(serial, all_done));
+                             tbb::make_filter<Step, void>(parallel, ended));
 }
 
 }  // namespace clearway

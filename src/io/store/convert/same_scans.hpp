@@ -40,11 +40,6 @@ class PlaceSample {
   /// The sampled points, in order.
   std::span<const SampledPoint> points() const { return samples_; }
 
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(samples_, level_, group_, next_, seen_);
-  }
-
  private:
   static constexpr std::size_t kMostSamples = std::size_t{1} << 16;
 

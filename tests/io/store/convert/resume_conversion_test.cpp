@@ -2,8 +2,11 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <fstream>
 #include <functional>
 #include <map>
+#include <mutex>
+#include <set>
 
 #include "clearway/convert.hpp"
 #include "core/cloud/packed_cloud.hpp"
@@ -89,6 +92,33 @@ std::string laz_scan(std::size_t count, std::uint64_t seed, LazBytes::Table tabl
   return file.build();
 }
 
+/// Calls a function after each advance, one at a time.
+class EachAdvance final : public Progress {
+ public:
+  explicit EachAdvance(std::function<void()> advanced) : advanced_(std::move(advanced)) {}
+
+  void begin(std::string_view, std::uint64_t, std::string_view) override {}
+  void advance(std::uint64_t) override {
+    const std::lock_guard lock(mutex_);
+    advanced_();
+  }
+  void end() override {}
+  bool stop_requested() const override { return false; }
+
+ private:
+  std::function<void()> advanced_;
+  std::mutex mutex_;
+};
+
+/// How far a conversion came whose report says what it went on from.
+int phase_of(const ConversionReport& report) {
+  constexpr std::array<std::string_view, 4> kPhases{
+      "", "the inputs were inspected", "all points were counted", "all points were distributed"};
+  const auto at = std::ranges::find(kPhases, report.resumed_from);
+  REQUIRE(at != kPhases.end());
+  return static_cast<int>(at - kPhases.begin());
+}
+
 /// Conversions to a folder for the store alone, and what the store is when nobody disturbs its
 /// making.
 class Resumed : public Conversion {
@@ -98,7 +128,6 @@ class Resumed : public Conversion {
     options.output = out() / "a.h5";
     options.overwrite = false;
     options.threads = 1;
-    options.counted_interval_seconds = 0;
   }
 
   fs::path out() const { return folder / "out"; }
@@ -140,16 +169,17 @@ class Resumed : public Conversion {
     check_equal(names_in(out()), {"a.h5"});
   }
 
-  /// The files that a process leaves that is killed after each `step`-th record of its journal.
-  std::vector<FilesLeft> killed_at_records(std::size_t step, std::size_t first = 0) {
+  /// The files that a process leaves that is killed after each record of its journal and, unless
+  /// null, after each `step`-th advance of a stage.
+  std::vector<FilesLeft> killed(int step = 0) {
     std::vector<FilesLeft> found;
-    std::size_t record = 0;
     ConversionOptions watched = options;
-    watched.journalled = [&] {
-      if (record >= first && (record - first) % step == 0) found.push_back(files_in(out()));
-      ++record;
-    };
-    convert_quietly(watched);
+    watched.journalled = [&] { found.push_back(files_in(out())); };
+    int advances = 0;
+    EachAdvance progress([&] {
+      if (step > 0 && ++advances % step == 0) found.push_back(files_in(out()));
+    });
+    convert_scans(watched, progress);
     clear();
     return found;
   }
@@ -161,7 +191,6 @@ class Resumed : public Conversion {
 struct ResumedRow {
   const char* name;
   std::function<void(Resumed&)> make;
-  std::size_t step = 3;  ///< the process is killed at each step-th record
 };
 
 const std::vector<ResumedRow> kResumedRows{
@@ -169,8 +198,7 @@ const std::vector<ResumedRow> kResumedRows{
      [](Resumed& scans) {
        scans.add_classed("a.las", 100000, 3);
        scans.add_classed("b.las", 70000, 9);
-     },
-     1},
+     }},
     {"PLY and text, whose scale is chosen, and many points at one place, of which the store warns",
      [](Resumed& scans) {
        std::vector<Vec3> positions = plane_positions(90000, 1);
@@ -197,86 +225,80 @@ const std::vector<ResumedRow> kResumedRows{
 
 }  // namespace
 
-TEST_CASE("a conversion that is killed at any record of its journal goes on to the same bytes") {
+TEST_CASE("a conversion that is killed at any moment goes on after the phase that it finished") {
   for (const ResumedRow& row : kResumedRows) {
     const RowName name(row.name);
     Resumed scans;
     row.make(scans);
     scans.expected();
-    const std::vector<FilesLeft> killed = scans.killed_at_records(row.step);
-    CHECK(killed.size() > 12 / row.step);
-    std::uint64_t taken_over = 0;
+    const std::vector<FilesLeft> killed = scans.killed(20);
+    CHECK(killed.size() > 10);
+    int before = 0;
+    std::set<int> phases;
     for (std::size_t i = 0; i < killed.size(); ++i) {
       CAPTURE(i);
       scans.put(killed[i]);
-      const ConversionReport report = scans.check_resumed();
-      CHECK(report.resumed_points >= taken_over);
-      CHECK(report.recounted_batches + report.repeated_batches <= 1);
-      CHECK(report.repeated_buckets <= 1);
-      taken_over = report.resumed_points;
+      const int phase = phase_of(scans.check_resumed());
+      CHECK(phase >= before);
+      phases.insert(before = phase);
     }
-    CHECK(taken_over > 100000);
+    CHECK(phases.contains(2));
+    CHECK(before == 3);
     scans.clear();
-    // The same where writing fails at a record, with other threads.
-    int failed = 0;
-    for (int last = 0; last >= 0; last += 4) {
+    // The same where writing fails at a record, or somebody stops it, with other threads.
+    for (int last = 0; last < 3; ++last) {
       CAPTURE(last);
       ConversionOptions options = scans.options;
       options.threads = 3;
-      std::atomic<int> left = last;
+      int left = last;
       options.journalled = [&left] {
         if (left-- == 0) throw ResourceError("the disk is full");
       };
-      if (conversion_refusal<ResourceError>(options).empty()) {
-        last = -100;
-      } else {
-        ++failed;
-        CHECK(!fs::exists(options.output));
-        CHECK(scans.check_resumed().repeated_batches <= 3);
-      }
+      const bool failed = !conversion_refusal<ResourceError>(options).empty();
+      CHECK((failed || last == 2));
+      CHECK(fs::exists(options.output) != failed);
+      if (failed) CHECK(phase_of(scans.check_resumed()) > last);
       scans.clear();
     }
-    CHECK(failed > 4);
+    for (const char* stage : {"count", "distribute", "partition"}) {
+      WatchedStage stopping(
+          stage, [] {}, 2);
+      CHECK_THROWS_AS(convert_scans(scans.resuming(), stopping), Interrupted);
+    }
+    CHECK(phase_of(scans.check_resumed()) == 3);
+    scans.clear();
   }
 }
 
-TEST_CASE("buckets that were written are copied, also by a resumption that is stopped itself") {
+TEST_CASE("points that their files do not hold any more are distributed again") {
   Resumed scans;
   scans.add_classed("a.las", 2300000);
   scans.expected();
-  ConversionOptions options = scans.options;
-  options.counted_interval_seconds = 1e9;
-  std::vector<FilesLeft> killed;
-  options.journalled = [&] {
-    const bool is_writing = fs::file_size(scans.out() / "a.h5.partial") > 100000;
-    if (is_writing) killed.push_back(files_in(scans.out()));
+  const FilesLeft left = scans.killed().back();
+  const auto check = [&](int phase, const std::function<void(FilesLeft&)>& change) {
+    FilesLeft changed = left;
+    change(changed);
+    scans.put(changed);
+    CHECK(phase_of(scans.check_resumed()) == phase);
   };
-  convert_quietly(options);
+  const std::string points = "a.h5.points-1";
+  check(3, [](FilesLeft&) {});
+  check(2, [&](FilesLeft& files) { files.erase(points); });
+  check(2, [&](FilesLeft& files) { files[points].resize(files[points].size() - 5000); });
+  check(2, [&](FilesLeft& files) {
+    // As a file system may leave a file whose bytes were not on the disk when the system crashed.
+    std::fill(files[points].begin() + 8192, files[points].begin() + 12288, '\0');
+  });
   scans.clear();
-  std::uint64_t copied = 0;
-  for (const FilesLeft& files : killed) {
-    scans.put(files);
-    for (const int advances : {1, 700}) {
-      WatchedStage progress(
-          "partition", [] {}, advances);
-      CHECK_THROWS_AS(convert_scans(scans.resuming(), progress), Interrupted);
-      CHECK(names_in(scans.out()).size() >= 2);
-    }
-    const ConversionReport report = scans.check_resumed();
-    CHECK(report.resumed_points == 2300000);
-    CHECK(report.repeated_buckets <= 2);
-    copied = std::max(copied, report.resumed_cells);
-    scans.clear();
-  }
-  CHECK(killed.size() >= 3);
-  CHECK(copied > 2000);
-  // Once all buckets are written their points are removed, before the store is complete.
-  FilesLeft without_points = killed.back();
-  CHECK(std::erase_if(without_points, [](const auto& file) {
-          return file.first.find(".points") != std::string::npos;
-        }) > 0);
-  scans.put(without_points);
-  CHECK(scans.check_resumed().resumed_cells == copied);
+  // While they wait, too.
+  ConversionOptions options = scans.options;
+  WatchedStage changing("partition", [&] {
+    std::fstream file(scans.out() / points, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(1000003);
+    file.put('!');
+  });
+  CHECK_THROWS_AS(convert_scans(options, changing), ResourceError);
+  CHECK(phase_of(scans.check_resumed()) == 2);
 }
 
 TEST_CASE("a journal that is cut or damaged never leads to wrong bytes") {
@@ -284,7 +306,7 @@ TEST_CASE("a journal that is cut or damaged never leads to wrong bytes") {
   scans.add_classed("a.las", 300, 2);
   scans.add("b.xyz", text_scan(20, 1));
   scans.expected();
-  const FilesLeft last = scans.killed_at_records(1).back();
+  const FilesLeft last = scans.killed().back();
   const std::size_t journal_bytes = last.at("a.h5.journal").size();
   for (std::size_t bytes = 0; bytes < journal_bytes; bytes += bytes < 100 ? 3 : 599) {
     CAPTURE(bytes);
@@ -313,15 +335,13 @@ TEST_CASE("a journal that is cut or damaged never leads to wrong bytes") {
     check_flipped("a.h5.journal", at);
   }
   CHECK(refused < 5);  // only where it is no journal any more
-  for (const char* name : {"a.h5.points-1", "a.h5.partial"}) {
-    CAPTURE(name);
-    for (std::size_t at = 8; at < last.at(name).size(); at += 2999) check_flipped(name, at);
-    FilesLeft lost = last;
-    lost.erase(name);
-    check_damaged(lost);
-    lost[name] = "";
-    check_damaged(lost);
-  }
+  const char* points = "a.h5.points-1";
+  for (std::size_t at = 8; at < last.at(points).size(); at += 2999) check_flipped(points, at);
+  FilesLeft lost = last;
+  lost.erase(points);
+  check_damaged(lost);
+  lost[points] = "";
+  check_damaged(lost);
 }
 
 TEST_CASE("an unfinished conversion is refused by name where its inputs or options differ") {
@@ -329,8 +349,8 @@ TEST_CASE("an unfinished conversion is refused by name where its inputs or optio
   scans.add_classed("a.las", 70000);
   scans.add_classed("b.las", 500);
   scans.expected();
-  const std::vector<FilesLeft> killed = scans.killed_at_records(1);
-  const FilesLeft left = killed[killed.size() / 2];
+  const std::vector<FilesLeft> killed = scans.killed();
+  const FilesLeft left = killed.front();
   scans.put(left);
   const fs::path b = scans.folder / "b.las", c = scans.folder / "c.las";
   fs::copy_file(b, c);
@@ -375,7 +395,7 @@ TEST_CASE("an unfinished conversion goes on with its inputs by other names of th
   scans.add("c.xyz", text_scan(3000, 2));
   scans.options.skip_unreadable = true;
   scans.expected();
-  const std::vector<FilesLeft> killed = scans.killed_at_records(1);
+  const std::vector<FilesLeft> killed = scans.killed();
   fs::create_directory_symlink(scans.folder / ".", scans.folder / "scans");
   const fs::path folder = scans.folder / "";
   const std::vector<fs::path> names{folder / ".", folder / "out" / "..", folder / "scans",
@@ -386,7 +406,7 @@ TEST_CASE("an unfinished conversion goes on with its inputs by other names of th
     for (fs::path& input : scans.options.inputs) input = names[i % names.size()] / input.filename();
     const ConversionReport report = convert_quietly(scans.resuming());
     CHECK(report.points == 73000);
-    if (i + 1 == killed.size()) CHECK(report.resumed_points > 0);
+    CHECK(phase_of(report) > 0);
   }
 }
 
@@ -397,7 +417,7 @@ TEST_CASE("no other conversion takes the journal of one that runs") {
   ConversionOptions running = scans.options;
   std::size_t records = 0;
   running.journalled = [&] {
-    if (++records % 4 != 0) return;
+    ++records;
     const FilesLeft before = files_in(scans.out());
     for (const bool overwrite : {true, false}) {
       ConversionOptions other = scans.options;
@@ -408,7 +428,7 @@ TEST_CASE("no other conversion takes the journal of one that runs") {
     CHECK(files_in(scans.out()) == before);
   };
   convert_quietly(running);
-  CHECK(records > 8);
+  CHECK(records == 2);
   scans.check_finished();
 }
 
@@ -416,12 +436,7 @@ TEST_CASE("files of a user beside the output stay, and so does what another conv
   Resumed scans;
   scans.add_classed("a.las", 70000);
   const std::string store = scans.expected();
-  scans.put({{"a.h5.written", "the notes of a user"}});
-  check_says(scans.refusal<UsageError>(), "a.h5.written: is where");
-  check_equal(names_in(scans.out()), {"a.h5.written"});
-
-  scans.clear();
-  FilesLeft left = scans.killed_at_records(20, 6).front();
+  FilesLeft left = scans.killed().front();
   left["a.h5.points-1"] = "the notes of a user";
   scans.put(left);
   check_says(conversion_refusal<UsageError>(scans.resuming()),

@@ -36,7 +36,7 @@ CONVERSIONS = {"convert": "environment.las", "convert several inputs": "0.xyz en
                "convert to cubes": "environment.las --layout regular:8",
                "convert near a path": "environment.las --near trajectory.txt --within 9"}
 OUTPUT = "out/out.h5"
-INHERITED = "resumes with (?!0 )|taken over from before: (?!0 )"
+INHERITED = "resumes with (?!0 )|goes on with an unfinished conversion"
 MOST_KILLED = 5  # in a row
 MOST_SECONDS = 60  # that a process may take to stop
 
