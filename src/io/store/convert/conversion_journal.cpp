@@ -30,9 +30,8 @@ constexpr const char* kOverwrites = "overwrites";
 // Changes whenever records, or what they rest on, change their meaning.
 constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 3";
 
-// The names in an identity of an input, and of the state of a file that another name has.
+// The name in an identity of an input.
 constexpr const char* kInput = "input ";
-constexpr const char* kState = "state of ";
 
 // The first bytes of a file of points, by which it is known.
 constexpr std::array<char, 8> kPointsMagic{'C', 'L', 'W', 'Y', 'P', 'N', 'T', 'S'};
@@ -53,33 +52,48 @@ std::string utc_text(std::int64_t seconds, std::int64_t nanoseconds) {
   return std::string(text.data()) + "." + digits + " UTC";
 }
 
-constexpr const char* kBytes = " bytes";
-constexpr const char* kModified = ", modified ";
-constexpr const char* kChanged = ", status changed ";
+/// What is known of the state of a file, by which it is known again.
+struct StateField {
+  const char* name;
+  std::string (*of)(const FileState& state);
+  /// The words before, between and after two different values
+  const char *had, *has, *end;
+};
 
-/// The size of a file, and when its bytes and its status were changed last.
-std::string state_text(const fs::path& path) {
-  const FileState state = state_of(path);
-  return std::to_string(state[0]) + kBytes + kModified + utc_text(state[1], state[2]) + kChanged +
-         utc_text(state[3], state[4]);
-}
+constexpr std::array<StateField, 3> kStateFields{{
+    {"bytes of ", [](const FileState& state) { return std::to_string(state[0]); }, " had ",
+     " bytes when it began, and has ", " now"},
+    {"time of ", [](const FileState& state) { return utc_text(state[1], state[2]); },
+     " was last modified at ", " when it began, and at ", " now"},
+    {"status of ", [](const FileState& state) { return utc_text(state[3], state[4]); },
+     " was renamed, or its rights or links were changed: its status changed at ",
+     " before it began, and at ", " since"},
+}};
+constexpr const char* kPoses = "poses in ";
 
-/// The state of a file, or the hash of the states of the files with poses in a folder. Its other
+/// Adds the state of a file, or a hash of the states of the files with poses in a folder. Its other
 /// files, such as those of this conversion, may come and go.
-std::string state_of_all(const fs::path& path) {
+void add_state(JournalIdentity& identity, const fs::path& path) {
   std::error_code unknown;
-  if (!fs::is_directory(path, unknown)) return state_text(path);
-  Xxh64Stream hash;
-  for (const fs::path& file : files_behind(path)) {
-    const std::string state = file.filename().string() + " " + state_text(file);
-    hash.update(std::as_bytes(std::span(state)));
+  if (fs::is_directory(path, unknown)) {
+    JournalIdentity poses;
+    for (const fs::path& file : files_behind(path)) add_state(poses, file);
+    Xxh64Stream hash;
+    for (const auto& [name, value] : poses) {
+      const std::string state = fs::path(name).filename().string() + " " + value + " ";
+      hash.update(std::as_bytes(std::span(state)));
+    }
+    identity.emplace_back(kPoses + known_path(path).string(), hash_text(hash.digest()));
+    return;
   }
-  return hash_text(hash.digest());
+  for (const StateField& field : kStateFields) {
+    identity.emplace_back(field.name + known_path(path).string(), field.of(state_of(path)));
+  }
 }
 
 void add_file(JournalIdentity& identity, const std::string& name, const fs::path& path) {
   identity.emplace_back(name, path.empty() ? "none" : known_path(path).string());
-  if (!path.empty()) identity.emplace_back(kState + name, state_of_all(path));
+  if (!path.empty()) add_state(identity, path);
 }
 
 JournalIdentity identity_of(const ConversionOptions& options, bool replaces) {
@@ -113,15 +127,6 @@ std::vector<std::string> inputs_of(const JournalIdentity& identity) {
   return inputs;
 }
 
-/// The states of the files that an identity names, by their paths.
-std::map<std::string, std::string> states_of(const JournalIdentity& identity) {
-  std::map<std::string, std::string> states;
-  for (std::size_t i = 1; i < identity.size(); ++i) {
-    if (identity[i].first.starts_with(kState)) states[identity[i - 1].second] = identity[i].second;
-  }
-  return states;
-}
-
 /// Some paths in words, "a.las, b.las, c.las and 7 more".
 std::string in_words(const std::vector<std::string>& paths) {
   constexpr std::size_t kMost = 3;
@@ -131,45 +136,42 @@ std::string in_words(const std::vector<std::string>& paths) {
   return format_list(named);
 }
 
-/// A part of the state of a file: what follows `from`, up to `to`.
-std::string part_of_state(const std::string& state, const char* from, const char* to) {
-  const std::size_t begin = state.find(from);
-  if (begin == std::string::npos) return {};
-  const std::size_t first = begin + std::strlen(from);
-  return state.substr(first, *to == 0 ? std::string::npos : state.find(to, first) - first);
-}
-
-/// What became of a file between two of its states, in words.
-std::string change_text(const std::string& path, const std::string& before,
-                        const std::string& now) {
-  if (now.find(kModified) == std::string::npos) {
-    return "the files with poses in " + path + " have changed since it began";
+/// What became of the files of an identity, one change of each in words.
+std::vector<std::string> changes_in_words(const JournalIdentity& found,
+                                          const JournalIdentity& wanted) {
+  const std::map<std::string, std::string> values(wanted.begin(), wanted.end());
+  std::vector<std::string> changes;
+  std::string changed;  // the file that changed last
+  for (const auto& [name, before] : found) {
+    const auto at = values.find(name);
+    if (at == values.end() || at->second == before) continue;
+    const std::string& now = at->second;
+    if (name.starts_with(kPoses)) {
+      changes.push_back("the files with " + name + " have changed since it began");
+    }
+    for (const StateField& field : kStateFields) {
+      if (!name.starts_with(field.name)) continue;
+      const std::string path = name.substr(std::strlen(field.name));
+      if (std::exchange(changed, path) == path) continue;
+      changes.push_back(path + field.had + before + field.has + now + field.end);
+    }
   }
-  const auto bytes = [](const std::string& state) { return part_of_state(state, "", kBytes); };
-  const auto modified = [](const std::string& state) {
-    return part_of_state(state, kModified, kChanged);
-  };
-  if (bytes(before) != bytes(now)) {
-    return path + " had " + bytes(before) + " bytes when it began, and has " + bytes(now) + " now";
-  }
-  if (modified(before) != modified(now)) {
-    return path + " was last modified at " + modified(before) + " when it began, and at " +
-           modified(now) + " now";
-  }
-  return path + " was renamed, or its rights or links were changed, at " +
-         part_of_state(now, kChanged, "");
+  return changes;
 }
 
 /// What differs between the identity of an unfinished conversion and that of another one, in words;
 /// empty where nothing does.
 std::string difference_in_words(const JournalIdentity& found, const JournalIdentity& wanted) {
+  if (found == wanted) return {};
   std::vector<std::string> parts;
   if (found.front() != wanted.front()) {
     return "another release began it, and its records may have another meaning";
   }
   const auto options_of = [](JournalIdentity identity) {
     std::erase_if(identity, [](const auto& field) {
-      return field.first.starts_with(kInput) || field.first.starts_with(kState);
+      const auto begins = [&](const StateField& of) { return field.first.starts_with(of.name); };
+      return field.first.starts_with(kInput) || field.first.starts_with(kPoses) ||
+             std::ranges::any_of(kStateFields, begins);
     });
     return identity;
   };
@@ -197,12 +199,8 @@ std::string difference_in_words(const JournalIdentity& found, const JournalIdent
   if (missing.empty() && more.empty() && had != has) {
     parts.emplace_back("it has the same inputs in another order");
   }
-  const std::map<std::string, std::string> states = states_of(wanted);
-  for (const auto& [path, before] : states_of(found)) {
-    const auto now = states.find(path);
-    if (now == states.end() || now->second == before) continue;
-    parts.push_back(change_text(path, before, now->second));
-  }
+  const std::vector<std::string> changes = changes_in_words(found, wanted);
+  parts.insert(parts.end(), changes.begin(), changes.end());
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
   return text;

@@ -415,9 +415,8 @@ class Conversion {
     }
     SourceDescription others(environment.read_files(), described, progress_);
     InputSurvey survey{PlaceSample(environment.quantisation()), {}};
-    all.environment =
-        count_environment(environment, lattice, survey, hashes, threads_, clocks_, progress_,
-                          path ? &*path : nullptr);
+    all.environment = count_environment(environment, lattice, survey, hashes, threads_, clocks_,
+                                        progress_, path ? &*path : nullptr);
     all.sources = others.get(hashes.finish());
     all.boxes.take(survey.boxes);
     all.suspects = survey.places.suspects();
@@ -484,7 +483,7 @@ class Conversion {
   void keep_distributed(const EnvironmentSource& environment, const Distribution& distribution,
                         PlaceCounter& places) {
     std::vector<MetreCube> cubes = withheld_.take();
-    report_.largest_change = environment.largest_change();
+    report_.largest_change = environment.counts().largest_change;
     if (journal_ && !in_memory_) {
       std::vector<std::uint64_t> sums = distribution.sums(), counts;
       if (origins_ != nullptr) counts = origins_->counts();
@@ -495,8 +494,8 @@ class Conversion {
 
   /// Describes the corridor in the store, once all points were counted.
   void describe_corridor(const EnvironmentSource& environment, const Corridor& corridor) {
-    report_.far_points = environment.far_points();
-    report_.unread_points = environment.unread_points();
+    report_.far_points = environment.counts().far_points;
+    report_.unread_points = environment.counts().unread_points;
     const auto& passed_over = environment.passed_over();
     report_.passed_over_files =
         static_cast<std::uint64_t>(std::count(passed_over.begin(), passed_over.end(), true));
@@ -508,7 +507,7 @@ class Conversion {
                              .whole = report_.box.value_or(Box{}),
                              .left_out = report_.far_points,
                              .unread = report_.unread_points,
-                             .unread_bytes = environment.unread_bytes(),
+                             .unread_bytes = environment.counts().unread_bytes,
                              .passed_over = report_.passed_over_files};
   }
 
@@ -553,14 +552,14 @@ class Conversion {
       // Files of poses have 0 points.
       report_.metadata.source_points.resize(report_.metadata.sources.size());
     }
-    const std::uint64_t withheld = environment.withheld_points();
+    const std::uint64_t withheld = environment.counts().withheld_points;
     (options_.keep_withheld ? report_.kept_withheld_points : report_.withheld_points) = withheld;
     if (withheld > 0) {
       report_.metadata.withheld = {.points = withheld, .kept = options_.keep_withheld};
     }
     for (const CloudInfo& info : environment.infos()) report_.metadata.dates.add(info.date);
-    report_.absent_points = environment.absent_points();
-    report_.non_finite_points = environment.non_finite_points();
+    report_.absent_points = environment.counts().absent_points;
+    report_.non_finite_points = environment.counts().non_finite_points;
     const Quantisation& quanta = environment.quantisation();
     report_.scale = {quanta.scale[0], quanta.scale[1], quanta.scale[2]};
     report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};

@@ -192,7 +192,7 @@ CountedEnvironment count_environment(EnvironmentSource& environment, const Latti
                             path, progress);
   environment.leave_out_times();
   counted.points = sums.points;
-  counted.input_points = environment.input_points();
+  counted.input_points = environment.counts().input_points;
   counted.points_hash = sums.points_hash.digest(counted.input_points);
   if (sums.classes.points()[0] < counted.points) {
     counted.classes = {sums.classes_hash.digest(), sums.classes.points()};

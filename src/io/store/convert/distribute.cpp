@@ -92,9 +92,9 @@ UnitPoints Distribution::take(std::size_t unit) {
   if (files_.empty()) return std::move(memory_[unit]);
   std::optional<UnitPoints> points = points_in_file(unit, sums_[unit]);
   if (!points) {
-    throw ResourceError(files_[places_[unit].file].name() +
-                            ": does not hold the points that were written into it",
-                        Remedy::kResume);
+    throw ResourceError(
+        files_[places_[unit].file].name() + ": does not hold the points that were written into it",
+        Remedy::kResume);
   }
   return std::move(*points);
 }
@@ -219,7 +219,7 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
   order.finish();
   const bool same_classes =
       has_classes ? classes.digest() == counted.classes : !counted.classes.has_value();
-  if (hash.digest(environment.input_points()) != counted.points || !same_classes) {
+  if (hash.digest(environment.counts().input_points) != counted.points || !same_classes) {
     refuse_change(environment);
   }
 }

@@ -12,7 +12,6 @@
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/declared_box.hpp"
-#include "io/store/convert/converted_heights.hpp"
 #include "io/store/convert/coordinate_range.hpp"
 #include "io/store/convert/file_boxes.hpp"
 #include "io/store/convert/read_points.hpp"
@@ -56,7 +55,7 @@ EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& i
   open_inputs();
   find_crs();
   withheld_edge_ = metre_cube_edge(crs_.unit);
-  begin_converting_heights();
+  for (CloudInfo& info : infos_) convert_heights(info);
   if (auto kept = common_quanta(files(), infos_, options_.scale)) {
     quantisation_ = kept->quantisation;
     shifts_ = std::move(kept->shifts);
@@ -128,17 +127,33 @@ void EnvironmentSource::find_crs() {
   }
 }
 
-void EnvironmentSource::begin_converting_heights() {
-  if (crs_.height_factor == 1) return;
-  for (CloudInfo& info : infos_) convert_heights(info, crs_.height_factor);
-  current_.reset();  // it was opened before the factor was known
-  if (stream_) stream_ = converted(std::move(stream_));
+void EnvironmentSource::convert_heights(CloudInfo& info) const {
+  const double factor = crs_.height_factor;
+  if (info.quantisation) {
+    info.quantisation->scale[2] *= factor;
+    info.quantisation->offset[2] *= factor;
+  }
+  if (info.declared_box) convert_heights(*info.declared_box);
+  for (OriginRun& run : info.origins) {
+    if (run.origin) run.origin->z *= factor;
+  }
 }
 
-std::shared_ptr<PointReader> EnvironmentSource::converted(
-    std::shared_ptr<PointReader> reader) const {
-  if (crs_.height_factor == 1) return reader;
-  return with_converted_heights(std::move(reader), crs_.height_factor);
+void EnvironmentSource::convert_heights(Box& box) const {
+  box.lo.z *= crs_.height_factor;
+  box.hi.z *= crs_.height_factor;
+}
+
+void EnvironmentSource::convert_heights(PointBatch& batch) const {
+  if (crs_.height_factor == 1) return;
+  for (Vec3& position : batch.positions) position.z *= crs_.height_factor;
+}
+
+std::optional<Box> EnvironmentSource::bounds_of(const PointReader& reader,
+                                                std::size_t piece) const {
+  std::optional<Box> bounds = reader.bounds_of_piece(piece);
+  if (bounds) convert_heights(*bounds);
+  return bounds;
 }
 
 std::vector<Message> EnvironmentSource::remarks() const {
@@ -181,8 +196,8 @@ void EnvironmentSource::choose_offset_and_scale(Progress& progress) {
 const std::shared_ptr<PointReader>& EnvironmentSource::reader(std::size_t file) {
   if (stream_) return stream_;
   if (!current_ || open_file_ != file) {
-    current_ = converted(reading_one_of(
-        files().size(), [&] { return open_point_file(files()[file], how_to_read_); }));
+    current_ = reading_one_of(files().size(),
+                              [&] { return open_point_file(files()[file], how_to_read_); });
     open_file_ = file;
   }
   return current_;
@@ -212,7 +227,7 @@ bool EnvironmentSource::next(RecordBatch& records) {
       records.reader = from;
       records.piece = piece_++;
       count = from->points_of_piece(records.piece);
-      const std::optional<Box> bounds = from->bounds_of_piece(records.piece);
+      const std::optional<Box> bounds = bounds_of(*from, records.piece);
       if (is_far(bounds)) {
         records.unread = count;
         records.unread_bytes = from->place_of_piece(records.piece).count;
@@ -220,12 +235,15 @@ bool EnvironmentSource::next(RecordBatch& records) {
       }
     } else if (from->pieces() == 0 &&
                reading_one_of(files().size(), [&] { return from->read(records.points); })) {
+      convert_heights(records.points);
       records.reader.reset();
       count = records.points.size();
     } else {
-      infos_[file_].remarks = from->info().remarks;
-      infos_[file_].origins = from->info().origins;
-      infos_[file_].origins_rest_on = from->info().origins_rest_on;
+      CloudInfo found = from->info();
+      convert_heights(found);
+      infos_[file_].remarks = std::move(found.remarks);
+      infos_[file_].origins = std::move(found.origins);
+      infos_[file_].origins_rest_on = std::move(found.origins_rest_on);
       points_of_files_.push_back(file_points_);
       continue;
     }
@@ -272,20 +290,7 @@ void EnvironmentSource::read_piece(RecordBatch& records, PieceBytes* bytes) cons
     records.reader->read_piece(records.piece, records.points, bytes);
     return true;
   });
-}
-
-void EnvironmentSource::note(const QuantaBatch& batch) {
-  ReadCounts& all = counts_;
-  if (all.non_finite_points == 0) all.first_non_finite = batch.first_non_finite;
-  all.input_points += batch.records;
-  all.non_finite_points += batch.non_finite_points;
-  all.absent_points += batch.absent_points;
-  if (all.withheld_points == 0) all.first_withheld = batch.first_withheld;
-  all.withheld_points += batch.withheld_points;
-  all.far_points += batch.far_points;
-  all.unread_points += batch.unread_points;
-  all.unread_bytes += batch.unread_bytes;
-  all.largest_change = std::max(all.largest_change, batch.largest_change);
+  convert_heights(records.points);
 }
 
 bool EnvironmentSource::read(QuantaBatch& batch) {
@@ -332,13 +337,10 @@ void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool w
   if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
   batch.file = records.file;
   batch.first_source = records.first_source;
-  batch.records = records.points.size();
+  batch.counts = {.input_points = records.points.size()};
   batch.quanta.clear();
   batch.offsets.clear();
   batch.classes.clear();
-  batch.non_finite_points = batch.absent_points = 0;
-  batch.far_points = batch.unread_points = batch.unread_bytes = 0;
-  batch.largest_change = 0;
   note_withheld(records, batch);
   if (shifts_.empty() || !infos_[records.file].quantisation) {
     append_rounded(records, batch);
@@ -383,8 +385,10 @@ void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& o
   out.classes.clear();
   out.times.clear();
   out.turn.reset();
-  out.records = out.far_points = out.unread_points = records.unread;
-  out.unread_bytes = records.unread_bytes;
+  out.counts = {.input_points = records.unread,
+                .far_points = records.unread,
+                .unread_points = records.unread,
+                .unread_bytes = records.unread_bytes};
   out.whole = {.points = records.unread};
   for (int k = 0; k < 3; ++k) {
     const auto quantum = [&](double at) {
@@ -413,7 +417,7 @@ void EnvironmentSource::count_beyond(QuantaBatch& out) const {
 /// them, so that those of other pieces cannot be believed either.
 void EnvironmentSource::check_bounds(const RecordBatch& records, const QuantaBatch& batch) const {
   if (!records.reader || batch.whole.points == 0) return;
-  const std::optional<Box> bounds = records.reader->bounds_of_piece(records.piece);
+  const std::optional<Box> bounds = bounds_of(*records.reader, records.piece);
   if (!bounds) return;
   for (int k = 0; k < 3; ++k) {
     const double step = 2 * quantisation_.scale[k];
@@ -440,7 +444,7 @@ void EnvironmentSource::drop_far(QuantaBatch& out) const {
     offsets.push_back(out.offsets.empty() ? static_cast<std::uint32_t>(i) : out.offsets[i]);
     out.quanta[kept++] = out.quanta[i];
   }
-  out.far_points = count - kept;
+  out.counts.far_points = count - kept;
   if (kept == count) return;
   out.quanta.resize(kept);
   out.offsets = std::move(offsets);
@@ -493,11 +497,10 @@ MetreCube cube_of(const Vec3& p, double edge) {
 /// Counts the records that are withheld, and finds their cubes where they are left out.
 void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& out) const {
   const PointBatch& batch = records.points;
-  out.withheld_points = 0;
   out.withheld_cubes.clear();
   for (std::size_t i = 0; i < batch.flags.size(); ++i) {
     if (!batch.is_withheld(i)) continue;
-    if (out.withheld_points++ == 0) out.first_withheld = records.first_source + i;
+    if (out.counts.withheld_points++ == 0) out.counts.first_withheld = records.first_source + i;
     if (options_.keep_withheld) continue;
     const MetreCube cube = cube_of(point_of(batch, infos_[records.file], i), withheld_edge_);
     // Neighbours in a file mostly share a cube.
@@ -510,7 +513,7 @@ void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& o
 
 void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) const {
   out.quanta = std::move(records.points.quanta);
-  if (!options_.keep_withheld && out.withheld_points > 0) {
+  if (!options_.keep_withheld && out.counts.withheld_points > 0) {
     for (std::uint32_t i = 0; i < out.quanta.size(); ++i) {
       if (records.points.is_withheld(i)) continue;
       out.quanta[out.offsets.size()] = out.quanta[i];
@@ -533,8 +536,8 @@ void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) cons
                          Remedy::kScale);
       }
       q[k] = static_cast<std::int32_t>(shifted);
-      out.largest_change =
-          std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - before));
+      out.counts.largest_change = std::max(
+          out.counts.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - before));
     }
   }
 }
@@ -549,10 +552,11 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
       if (withheld) {
         // Counted already.
       } else if (absent != batch.absent.end() && *absent == i) {
-        ++out.absent_points;
+        ++out.counts.absent_points;
         ++absent;
       } else {
-        if (out.non_finite_points++ == 0) out.first_non_finite = records.first_source + i;
+        if (out.counts.non_finite_points++ == 0)
+          out.counts.first_non_finite = records.first_source + i;
       }
       if (out.offsets.empty()) {
         for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
@@ -569,8 +573,8 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
         refuse_beyond_quanta(records.file);
       }
       q[k] = static_cast<std::int32_t>(quantum);
-      out.largest_change =
-          std::max(out.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
+      out.counts.largest_change = std::max(
+          out.counts.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
     }
     out.quanta.push_back(q);
     // Points after the first dropped one need an index of their own; without any dropped point,

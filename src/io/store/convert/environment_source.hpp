@@ -27,19 +27,6 @@ struct EnvironmentOptions {
   std::filesystem::path temporary_folder = ".";
 };
 
-/// Sums over what was read from the beginning of the inputs on.
-struct ReadCounts {
-  std::uint64_t input_points = 0;
-  std::uint64_t non_finite_points = 0;
-  std::uint64_t first_non_finite = 0;  ///< source index of the first one
-  std::uint64_t absent_points = 0;     ///< records that hold no point, by the rules of their format
-  std::uint64_t withheld_points = 0;
-  std::uint64_t first_withheld = 0;
-  /// Points that keep_near() left out; of these, points that were not read, and their bytes
-  std::uint64_t far_points = 0, unread_points = 0, unread_bytes = 0;
-  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
-};
-
 /// What has to be read of all inputs before their points can be read in order.
 struct FoundInputs {
   ReadableInputs readable;
@@ -124,7 +111,7 @@ class EnvironmentSource {
   /// threads may call it at once. with_bytes: whether the bytes of a piece are wanted too.
   void convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const;
   /// Counts what was read. Called for all batches in input order.
-  void note(const QuantaBatch& batch);
+  void note(const QuantaBatch& batch) { counts_.add(batch.counts); }
   void rewind();
 
   FoundInputs found() const;
@@ -149,34 +136,21 @@ class EnvironmentSource {
   /// began.
   void refuse_changed() const { inputs_.refuse_changed(); }
 
-  // The following count what has been read since the last rewind().
-  std::uint64_t input_points() const { return counts_.input_points; }
-  std::uint64_t non_finite_points() const { return counts_.non_finite_points; }
-  /// The source index of the first non-finite point.
-  std::uint64_t first_non_finite() const { return counts_.first_non_finite; }
+  /// What has been read since the last rewind().
+  const ReadCounts& counts() const { return counts_; }
   /// Number of source indices that each of files() takes; complete once read() has returned false.
   const std::vector<std::uint64_t>& points_of_files() const { return points_of_files_; }
-  /// Number of records of the files that hold no point, by the rules of their format.
-  std::uint64_t absent_points() const { return counts_.absent_points; }
-  /// Number of points with the flag `withheld`.
-  std::uint64_t withheld_points() const { return counts_.withheld_points; }
-  /// The source index of the first of them.
-  std::uint64_t first_withheld() const { return counts_.first_withheld; }
-  /// Number of points that keep_near() left out; and of these, points that were not read, with the
-  /// bytes that hold them.
-  std::uint64_t far_points() const { return counts_.far_points; }
-  std::uint64_t unread_points() const { return counts_.unread_points; }
-  std::uint64_t unread_bytes() const { return counts_.unread_bytes; }
-  /// Largest |stored - read| of any coordinate, metres.
-  double largest_change() const { return counts_.largest_change; }
 
  private:
   void open_inputs();
   void find_crs();
-  void begin_converting_heights();
+  /// Bring heights as they were read to the unit of the plane.
+  void convert_heights(CloudInfo& info) const;
+  void convert_heights(Box& box) const;
+  void convert_heights(PointBatch& batch) const;
+  std::optional<Box> bounds_of(const PointReader& reader, std::size_t piece) const;
   void take_late_crs();
   void choose_offset_and_scale(Progress& progress);
-  std::shared_ptr<PointReader> converted(std::shared_ptr<PointReader> reader) const;
   const std::shared_ptr<PointReader>& reader(std::size_t file);
   void read_piece(RecordBatch& records, PieceBytes* bytes) const;
   bool leaves_out(const PointBatch& batch, std::size_t point) const {

@@ -62,30 +62,31 @@ std::string name_of(const EnvironmentSource& environment, std::uint64_t source) 
 void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& metadata,
                      MessageLog& log) {
   const auto records = static_cast<double>(metadata.input_points);
-  const auto non_finite = static_cast<double>(environment.non_finite_points());
-  const auto absent = static_cast<double>(environment.absent_points());
+  const auto non_finite = static_cast<double>(environment.counts().non_finite_points);
+  const auto absent = static_cast<double>(environment.counts().absent_points);
   if (non_finite > 0) {
     log.warn("non-finite-points",
-             format_count(environment.non_finite_points()) + " points (" +
+             format_count(environment.counts().non_finite_points) + " points (" +
                  percentage(non_finite / records) +
                  ") with NaN or infinite coordinates are left out; the first is " +
-                 name_of(environment, environment.first_non_finite()),
+                 name_of(environment, environment.counts().first_non_finite),
              {{"points", non_finite}, {"share", non_finite / records}});
   }
-  const auto withheld = static_cast<double>(environment.withheld_points());
+  const auto withheld = static_cast<double>(environment.counts().withheld_points);
   if (withheld > 0) {
     const bool kept = metadata.withheld && metadata.withheld->kept;
     log.add(warning_or_note(
         !kept && withheld > kMostWithheld * records, "withheld-points",
-        format_count(environment.withheld_points()) + " of " + format_count(metadata.input_points) +
-            " points (" + percentage(withheld / records) + ") have the flag `withheld` and are " +
+        format_count(environment.counts().withheld_points) + " of " +
+            format_count(metadata.input_points) + " points (" + percentage(withheld / records) +
+            ") have the flag `withheld` and are " +
             (kept ? "kept; the first is " : "left out as deleted; the first is ") +
-            name_of(environment, environment.first_withheld()),
+            name_of(environment, environment.counts().first_withheld),
         {{"points", withheld}, {"share", withheld / records}, {"kept", kept ? 1.0 : 0.0}}));
   }
   if (absent > kMostAbsent * records && metadata.point_count > 0) {
     log.warn("absent-points",
-             format_count(environment.absent_points()) + " of " +
+             format_count(environment.counts().absent_points) + " of " +
                  format_count(metadata.input_points) + " records (" + percentage(absent / records) +
                  ") hold no point",
              {{"records", absent}, {"share", absent / records}});

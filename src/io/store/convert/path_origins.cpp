@@ -166,7 +166,7 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
   OfBatch out;
   const GpsTimes kind = kinds_[batch.file];
   if (batch.times.empty()) {
-    if (batch.records > 0) out.runs.push_back({batch.first_source, std::nullopt});
+    if (batch.counts.input_points > 0) out.runs.push_back({batch.first_source, std::nullopt});
     return out;
   }
   std::size_t step = 0;

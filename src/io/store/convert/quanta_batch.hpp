@@ -63,6 +63,34 @@ struct FileBox {
   }
 };
 
+/// Sums over records of the inputs.
+struct ReadCounts {
+  std::uint64_t input_points = 0;
+  std::uint64_t non_finite_points = 0;
+  std::uint64_t first_non_finite = 0;  ///< source index of the first one, where there is one
+  std::uint64_t absent_points = 0;     ///< records that hold no point, by the rules of their format
+  std::uint64_t withheld_points = 0;   ///< with the flag `withheld`
+  std::uint64_t first_withheld = 0;    ///< source index of the first one, where there is one
+  /// Points left out because they are too far from a path; of these, points that were not read, and
+  /// the bytes that hold them
+  std::uint64_t far_points = 0, unread_points = 0, unread_bytes = 0;
+  double largest_change = 0;  ///< largest |stored - read| of any coordinate, metres
+
+  /// Adds what was read next.
+  void add(const ReadCounts& next) {
+    if (non_finite_points == 0) first_non_finite = next.first_non_finite;
+    if (withheld_points == 0) first_withheld = next.first_withheld;
+    input_points += next.input_points;
+    non_finite_points += next.non_finite_points;
+    absent_points += next.absent_points;
+    withheld_points += next.withheld_points;
+    far_points += next.far_points;
+    unread_points += next.unread_points;
+    unread_bytes += next.unread_bytes;
+    largest_change = std::max(largest_change, next.largest_change);
+  }
+};
+
 /// Consecutive points of the environment in the store's integers, without those that are not
 /// finite, withheld, or too far from a path.
 struct QuantaBatch {
@@ -78,22 +106,11 @@ struct QuantaBatch {
 
   std::optional<Pose> turn{};  ///< PointBatch::turn
 
-  std::uint64_t records = 0;  ///< number of input points
-  std::uint64_t non_finite_points = 0;
-  /// Source index of the first non-finite point, where there is one.
-  std::uint64_t first_non_finite = 0;
-  std::uint64_t absent_points = 0;
-  /// Records with the flag `withheld`, and where they are left out the cubes in which they lie,
-  /// each once.
-  std::uint64_t withheld_points = 0;
-  std::uint64_t first_withheld = 0;  ///< source index of the first of them, where there is one
+  ReadCounts counts;
+  /// Where records with the flag `withheld` are left out, the cubes in which they lie, each once.
   std::vector<MetreCube> withheld_cubes;
-  FileBox whole;                    ///< of the finite points, those too far from a path included
-  std::uint64_t far_points = 0;     ///< points left out because they are too far from a path
-  std::uint64_t unread_points = 0;  ///< of these, points that were not read
-  std::uint64_t unread_bytes = 0;   ///< the bytes that hold them
-  double largest_change = 0;        ///< largest |stored - read| of any coordinate, metres
-  PieceBytes bytes;                 ///< the bytes from which a piece was read, where requested
+  FileBox whole;     ///< of the finite points, those too far from a path included
+  PieceBytes bytes;  ///< the bytes from which a piece was read, where requested
 
   std::uint64_t source(std::size_t i) const {
     return first_source + (offsets.empty() ? i : offsets[i]);

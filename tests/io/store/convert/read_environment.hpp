@@ -37,9 +37,9 @@ struct Inputs : Conversion {
       }
     }
     out.quantisation = source.quantisation();
-    out.input_points = source.input_points();
-    out.non_finite_points = source.non_finite_points();
-    out.largest_change = source.largest_change();
+    out.input_points = source.counts().input_points;
+    out.non_finite_points = source.counts().non_finite_points;
+    out.largest_change = source.counts().largest_change;
     out.warnings = source.remarks();
     out.unit = source.unit();
     return out;
