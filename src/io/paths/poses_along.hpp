@@ -24,6 +24,11 @@ struct PosesAlong : Remarks {
   std::vector<Pose> hand_over(std::vector<Message>* messages, PoseLabels* labels);
 };
 
+/// A stretch of an alignment or a line: its stations in metres.
+struct Reach {
+  double from = 0, to = 0;
+};
+
 /// Stations, as lengths, count as equal up to this many metres.
 inline constexpr double kSameStation = 1e-6;
 

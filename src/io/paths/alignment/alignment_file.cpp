@@ -49,21 +49,15 @@ pugi::xml_node choose_alignment(const LandXml& xml, const AlignmentOptions& opti
   return choose_by_name(xml, nodes, options.alignment, "alignment", "--alignment");
 }
 
-/// Stations in metres.
-struct Reach {
-  double from = 0, to = 0;
-};
-
 /// A station that was asked for, which the plan has to reach.
 double asked_station(const LandXml& xml, const AlignmentPlan& plan, double station,
                      const char* option) {
-  const double metres = UnitFactor(xml.metres_per_unit())(station);
+  const double metres = xml.in_metres(station);
   const double first = plan.first_station(), last = plan.last_station();
   if (metres < first - kSameStation || metres > last + kSameStation) {
     throw UsageError(xml.name() + ": " + option + " " + format_digits(station, 9) +
-                     " is off the alignment; expected a station from " +
-                     format_digits(first / xml.metres_per_unit(), 9) + " to " +
-                     format_digits(last / xml.metres_per_unit(), 9));
+                     " is off the alignment; expected a station from " + xml.unit_text(first) +
+                     " to " + xml.unit_text(last));
   }
   return std::clamp(metres, first, last);
 }
@@ -81,10 +75,9 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
   if (reach.from == reach.to && within(reach.from)) return;
   reach = {std::max(reach.from, profile.first_station()),
            std::min(reach.to, profile.last_station())};
-  const double unit = xml.metres_per_unit();
   const std::string has = "the profile has heights from station " +
-                          format_digits(profile.first_station() / unit, 9) + " to " +
-                          format_digits(profile.last_station() / unit, 9) + " only";
+                          xml.unit_text(profile.first_station()) + " to " +
+                          xml.unit_text(profile.last_station()) + " only";
   if (reach.from > reach.to) refuse(xml.name(), has + ", where no pose is wanted");
   const double begins = reach.from - asked.from, ends = asked.to - reach.to;
   const std::string later =
@@ -96,8 +89,8 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
            xml.name() + ": " + has + ", so the poses " + later +
                (later.empty() || earlier.empty() ? "" : " and ") + earlier +
                " than what was wanted of the plan",
-           {{"first", profile.first_station() / unit},
-            {"last", profile.last_station() / unit},
+           {{"first", xml.in_units(profile.first_station())},
+            {"last", xml.in_units(profile.last_station())},
             {"begins_after", begins},
             {"ends_before", ends}});
 }
@@ -112,11 +105,10 @@ void remark_cant_ends(const LandXml& xml, const Alignment& track, const Reach& r
   // Beyond an end without cant the track is level, as is usual.
   const bool canted = (early && begin.cant != 0) || (late && end.cant != 0);
   if (!canted) return;
-  const double unit = xml.metres_per_unit();
-  const std::string text = xml.name() + ": the cant is given from station " +
-                           format_digits(first / unit, 9) + " to " + format_digits(last / unit, 9) +
+  const std::string text = xml.name() + ": the cant is given from station " + xml.unit_text(first) +
+                           " to " + xml.unit_text(last) +
                            " only; beyond its ends the last value was kept, which is not 0";
-  out.warn("cant-ends", text, {{"first", first / unit}, {"last", last / unit}});
+  out.warn("cant-ends", text, {{"first", xml.in_units(first)}, {"last", xml.in_units(last)}});
 }
 
 /// Warns where it matters which foot the file means.
@@ -132,7 +124,7 @@ void remark_feet(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& o
   if (!(moved > kFeetApart)) return;
   out.warn("alignment-feet",
            xml.name() + ": the coordinates are in " + units_text(unit) + ", up to " +
-               format_digits(largest / unit, 9) + "; in " + units_text(other) + " they would be " +
+               xml.unit_text(largest) + "; in " + units_text(other) + " they would be " +
                format_brief(moved) +
                " m elsewhere, so make sure that the scan and the file mean the same foot",
            {{"metres", moved}});
@@ -180,8 +172,7 @@ void add_poses(const LandXml& xml, const Alignment& track, AlignmentFile& out) {
     for (const double number : pose.rotation) sum += number;
     for (const double number : pose.translation) sum += number;
     if (!std::isfinite(sum)) {
-      refuse(xml.name(), "gives no finite pose at station " +
-                             format_digits(station / xml.metres_per_unit(), 9) +
+      refuse(xml.name(), "gives no finite pose at station " + xml.unit_text(station) +
                              "; its lengths or heights are too large");
     }
     out.poses.push_back(pose);
@@ -191,7 +182,7 @@ void add_poses(const LandXml& xml, const Alignment& track, AlignmentFile& out) {
 /// The alignment without its cant.
 Alignment read_track(const LandXml& xml, pugi::xml_node node, const AlignmentOptions& options,
                      AlignmentFile& out) {
-  Alignment track{.plan = read_plan(xml, node, options, out),
+  Alignment track{.plan = read_plan(xml, node, options.max_gap, out),
                   .profile = read_profile(xml, node, options, out)};
   if (track.profile && options.height) {
     throw UsageError(
@@ -212,7 +203,7 @@ Alignment read_track(const LandXml& xml, pugi::xml_node node, const AlignmentOpt
 AlignmentFile read_alignment_file(const std::filesystem::path& path,
                                   const AlignmentOptions& options) {
   check_options(options);
-  const LandXml xml(path);
+  const LandXml xml(path, options.order);
   const pugi::xml_node node = choose_alignment(xml, options);
   AlignmentFile out;
   out.alignment = xml.name_of(node);

@@ -15,9 +15,9 @@
 /// what is malformed, not read or does not fit together, and append warnings to `out`.
 namespace clearway {
 
-/// The plan of an element Alignment.
-AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment,
-                        const AlignmentOptions& options, AlignmentFile& out);
+/// The plan of an element Alignment. max_gap: see AlignmentOptions.
+AlignmentPlan read_plan(const LandXml& xml, pugi::xml_node alignment, double max_gap,
+                        AlignmentFile& out);
 
 /// The profile that the options name, or the only one; nullopt where the alignment has none. Sets
 /// its name in `out`.

@@ -3,33 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "clearway/file_unit.hpp"
-#include "core/util/format.hpp"
 #include "io/files/file.hpp"
-#include "io/files/input_error.hpp"
+#include "io/files/json.hpp"
 #include "io/files/text_lines.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
 
-struct LandUnit {
-  std::string_view name;
-  bool imperial;
-  double metres;
-};
-
-/// The values of linearUnit in LandXML 1.2.
-constexpr LandUnit kUnits[] = {{"millimeter", false, 0.001},
-                               {"centimeter", false, 0.01},
-                               {"meter", false, 1},
-                               {"kilometer", false, 1000},
-                               {"foot", true, kMetresPerFoot},
-                               {"USSurveyFoot", true, kMetresPerUsSurveyFoot},
-                               {"inch", true, kMetresPerInch},
-                               {"mile", true, 1609.344}};
+/// The values of linearUnit in LandXML 1.2, in metres.
+constexpr NamedValue<double> kMetric[] = {
+    {"millimeter", 0.001}, {"centimeter", 0.01}, {"meter", 1}, {"kilometer", 1000}};
+constexpr NamedValue<double> kImperial[] = {{"foot", kMetresPerFoot},
+                                            {"USSurveyFoot", kMetresPerUsSurveyFoot},
+                                            {"inch", kMetresPerInch},
+                                            {"mile", 1609.344}};
+/// Those of elevationUnit, which have other names.
+constexpr NamedValue<double> kHeights[] = {
+    {"meter", 1}, {"kilometer", 1000}, {"feet", kMetresPerFoot}, {"miles", 1609.344}};
 
 std::vector<char> bytes_of(const std::filesystem::path& path) {
   const File file = File::open_regular(path);
@@ -52,49 +45,12 @@ std::string line_at(const std::filesystem::path& path, std::uint64_t offset) {
   return "line " + std::to_string(1 + count_line_breaks({text.data(), before}));
 }
 
-bool is_utf8(std::string_view text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto lead = static_cast<unsigned char>(text[i++]);
-    const int more = lead < 0x80       ? 0
-                     : lead >> 5 == 6  ? 1
-                     : lead >> 4 == 14 ? 2
-                     : lead >> 3 == 30 ? 3
-                                       : -1;
-    if (more < 0) return false;
-    for (int k = 0; k < more; ++k) {
-      if (i == text.size() || (static_cast<unsigned char>(text[i++]) >> 6) != 2) return false;
-    }
-  }
-  return true;
-}
-
-/// A name in UTF-8; one that is in another encoding is taken as ISO 8859-1.
-std::string utf8_of(std::string_view text) {
-  if (is_utf8(text)) return std::string(text);
-  std::string name;
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (code < 0x80) {
-      name += c;
-    } else {
-      name += static_cast<char>(0xC0 | code >> 6);
-      name += static_cast<char>(0x80 | (code & 0x3F));
-    }
-  }
-  return name;
-}
-
-std::string list_of_units() {
-  std::string list;
-  for (const LandUnit& unit : kUnits) list += (list.empty() ? "" : ", ") + std::string(unit.name);
-  return list;
-}
-
 }  // namespace
 
-LandXml::LandXml(const std::filesystem::path& path)
+LandXml::LandXml(const std::filesystem::path& path, AxisOrder order)
     : XmlText(path.string(), "the file",
-              [path](std::uint64_t offset) { return line_at(path, offset); }) {
+              [path](std::uint64_t offset) { return line_at(path, offset); }),
+      order_(order) {
   parse(bytes_of(path), kMostMarkup, "LandXML");
   read_unit();
 }
@@ -111,34 +67,24 @@ void LandXml::read_unit() {
                          " Imperial; expected one of them");
   }
   const pugi::xml_node system = metric ? metric : imperial;
-  const auto name = attribute(system, "linearUnit");
-  if (!name) refuse_at(system, "has no attribute linearUnit; expected the unit of lengths");
-  const auto* const unit = std::ranges::find_if(kUnits, [&](const LandUnit& known) {
-    return known.name == *name && known.imperial == bool(imperial);
-  });
-  if (unit == std::end(kUnits)) {
-    refuse_at(system, "has linearUnit=" + excerpt(*name) + "; expected one of " + list_of_units() +
-                          ", the first four in Metric and the others in Imperial");
-  }
-  metres_ = unit->metres;
-  unit_name_ = unit->name;
-  imperial_ = unit->imperial;
-  check_heights(system);
+  imperial_ = bool(imperial);
+  metres_ = metric ? named(system, "linearUnit", kMetric, {},
+                           " in Metric, or foot, USSurveyFoot, inch, mile in Imperial")
+                   : named(system, "linearUnit", kImperial, {},
+                           " in Imperial, or millimeter, centimeter, meter, kilometer in Metric");
+  unit_name_ = without_space_around(*attribute(system, "linearUnit"));
+  const double heights = named(system, "elevationUnit", kHeights, std::optional(metres_));
+  if (std::abs(heights - metres_) <= kSameHeights * metres_) return;
+  refuse_at(system, "has elevationUnit=" + excerpt(*attribute(system, "elevationUnit")) +
+                        " and linearUnit=" + excerpt(unit_name_) +
+                        "; expected one unit for heights and lengths");
 }
 
-void LandXml::check_heights(pugi::xml_node system) const {
-  const auto name = attribute(system, "elevationUnit");
-  if (!name) return;
-  // Here LandXML has other names than for linearUnit.
-  constexpr std::pair<std::string_view, double> kHeights[] = {
-      {"meter", 1}, {"kilometer", 1000}, {"feet", kMetresPerFoot}, {"miles", 1609.344}};
-  const auto* const unit =
-      std::ranges::find(kHeights, *name, &std::pair<std::string_view, double>::first);
-  if (unit != std::end(kHeights) && std::abs(unit->second - metres_) <= kSameHeights * metres_) {
-    return;
-  }
-  refuse_at(system, "has elevationUnit=" + excerpt(*name) + " and linearUnit=" +
-                        excerpt(unit_name_) + "; expected one unit for heights and lengths");
+std::string LandXml::swapped_advice() const {
+  return std::string("The coordinates were read as ") +
+         (order_ == AxisOrder::kNorthingEasting
+              ? "northing, easting; if the file has easting first, give --order en"
+              : "easting, northing; if the file has northing first, give --order ne");
 }
 
 pugi::xml_node LandXml::only_child(pugi::xml_node parent, const char* name,
@@ -152,7 +98,12 @@ pugi::xml_node LandXml::only_child(pugi::xml_node parent, const char* name,
 }
 
 std::string LandXml::name_of(pugi::xml_node node) const {
-  return utf8_of(attribute(node, "name").value_or(""));
+  const std::string name(attribute(node, "name").value_or(""));
+  if (valid_utf8(name) == name) return name;
+  // A name that is in another encoding is taken as ISO 8859-1.
+  std::wstring letters;
+  for (const char c : name) letters += static_cast<wchar_t>(static_cast<unsigned char>(c));
+  return pugi::as_utf8(letters);
 }
 
 std::optional<double> LandXml::number(pugi::xml_node node, const char* name) const {
@@ -164,16 +115,14 @@ std::optional<double> LandXml::number(pugi::xml_node node, const char* name) con
   return value;
 }
 
-std::optional<double> LandXml::length(pugi::xml_node node, const char* name) const {
-  auto value = number(node, name);
-  if (value) *value = UnitFactor(metres_)(*value);
-  return value;
-}
-
-double LandXml::required_length(pugi::xml_node node, const char* name, const char* what) const {
-  const auto value = length(node, name);
-  if (!value) refuse_at(node, "has no attribute " + std::string(name) + "; expected " + what);
-  return *value;
+std::optional<double> LandXml::length(pugi::xml_node node, const char* name, double least) const {
+  const auto value = number(node, name);
+  if (!value) return value;
+  if (!(*value >= least)) {
+    refuse_at(node, "has " + std::string(name) + "=" + excerpt(*attribute(node, name)) +
+                        "; expected " + format_number(least) + " or more");
+  }
+  return in_metres(*value);
 }
 
 std::vector<double> LandXml::numbers(pugi::xml_node node, std::size_t least, std::size_t most,
@@ -202,7 +151,7 @@ std::vector<double> LandXml::numbers(pugi::xml_node node, std::size_t least, std
   return found;
 }
 
-std::optional<std::complex<double>> LandXml::find_point(pugi::xml_node parent,
+std::optional<std::complex<double>> LandXml::find_place(pugi::xml_node parent,
                                                         const char* name) const {
   const pugi::xml_node node = only_child(parent, name);
   if (!node) return std::nullopt;
@@ -212,12 +161,13 @@ std::optional<std::complex<double>> LandXml::find_point(pugi::xml_node parent,
               "Export the alignment with coordinates");
   }
   const auto values = numbers(node, 2, 3, "a northing and an easting");
-  const UnitFactor metres(metres_);
-  return std::complex(metres(values[0]), metres(values[1]));
+  const double first = in_metres(values[0]), second = in_metres(values[1]);
+  return order_ == AxisOrder::kNorthingEasting ? std::complex(second, first)
+                                               : std::complex(first, second);
 }
 
-std::complex<double> LandXml::point(pugi::xml_node parent, const char* name) const {
-  const auto found = find_point(parent, name);
+std::complex<double> LandXml::place(pugi::xml_node parent, const char* name) const {
+  const auto found = find_place(parent, name);
   if (!found)
     refuse_at(parent, "has no " + std::string(name) + "; expected a northing and an easting");
   return *found;

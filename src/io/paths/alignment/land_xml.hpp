@@ -3,15 +3,24 @@
 #include <complex>
 #include <cstddef>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "clearway/alignment.hpp"
+#include "core/util/format.hpp"
+#include "io/files/input_error.hpp"
 #include "io/files/xml_text.hpp"
 
 namespace clearway {
+
+/// A value of an attribute by its name.
+template <typename Value>
+using NamedValue = std::pair<std::string_view, Value>;
 
 /// A LandXML file, which names places by their line. Lengths are given in metres.
 class LandXml : public XmlText {
@@ -19,13 +28,20 @@ class LandXml : public XmlText {
   static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 28;
   static constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 23;
 
-  /// Reads and parses the file. Throws InputError and ResourceError.
-  explicit LandXml(const std::filesystem::path& path);
+  /// Reads and parses the file. order: of its coordinates. Throws InputError and ResourceError.
+  LandXml(const std::filesystem::path& path, AxisOrder order);
 
   double metres_per_unit() const { return metres_; }
   /// The unit's name in LandXML, such as "USSurveyFoot".
   const std::string& unit_name() const { return unit_name_; }
   bool is_imperial() const { return imperial_; }
+  /// A length or station of the file in metres, and back in the unit of the file.
+  double in_metres(double length) const { return UnitFactor(metres_)(length); }
+  double in_units(double metres) const { return metres / metres_; }
+  /// A length or station in the unit of the file, for messages.
+  std::string unit_text(double metres) const { return format_digits(in_units(metres), 9); }
+  /// What to do where the coordinates seem to be swapped.
+  std::string swapped_advice() const;
 
   /// The only child of that name; an empty node where there is none. Throws where there are two.
   /// otherwise: another remedy than to have it once, for the message, such as ", or --cant none".
@@ -37,30 +53,56 @@ class LandXml : public XmlText {
 
   /// A finite number of an attribute; nullopt where it is missing.
   std::optional<double> number(pugi::xml_node node, const char* attribute) const;
-  /// A finite length or station of an attribute in metres; nullopt where it is missing.
-  std::optional<double> length(pugi::xml_node node, const char* attribute) const;
-  /// The same; throws where it is missing. what: says what it is, for the message.
-  double required_length(pugi::xml_node node, const char* attribute, const char* what) const;
+  /// A finite length or station of an attribute in metres; nullopt where it is missing. Throws for
+  /// one below `least`.
+  std::optional<double> length(pugi::xml_node node, const char* attribute,
+                               double least = -std::numeric_limits<double>::infinity()) const;
+  /// A value that the caller requires. Throws where it is missing. what: says what it is, for the
+  /// message.
+  template <typename Value>
+  Value required(const std::optional<Value>& value, pugi::xml_node node, const char* attribute,
+                 const std::string& what) const {
+    if (!value)
+      refuse_at(node, "has no attribute " + std::string(attribute) + "; expected " + what);
+    return *value;
+  }
+
+  /// The value that an attribute names. missing: what stands for it where there is none; nullopt
+  /// where it is required. otherwise: the end of the message about any other name.
+  template <typename Value, std::size_t kCount>
+  Value named(pugi::xml_node node, const char* attribute_name,
+              const NamedValue<Value> (&known)[kCount], std::optional<Value> missing = std::nullopt,
+              const std::string& otherwise = "") const {
+    const auto text = attribute(node, attribute_name);
+    if (!text && missing) return *missing;
+    std::string list;
+    for (const auto& [name, value] : known) {
+      if (text && without_space_around(*text) == name) return value;
+      const bool last = &value == &known[kCount - 1].second;
+      list += (list.empty() ? "" : last ? " or " : ", ") + std::string(name);
+    }
+    required(text, node, attribute_name, list + otherwise);
+    refuse_at(node, "has " + std::string(attribute_name) + "=" + excerpt(*text) + "; expected " +
+                        list + otherwise);
+  }
 
   /// The finite numbers of an element's text. Throws where there are fewer than `least` or more
   /// than `most`. what: what they are, such as "a northing and an easting".
   std::vector<double> numbers(pugi::xml_node node, std::size_t least, std::size_t most,
                               const char* what) const;
-  /// The two coordinates of the only child of that name, in metres and in the file's order. Throws
-  /// where it is missing, stands twice or refers to a point that stands elsewhere.
-  std::optional<std::complex<double>> find_point(pugi::xml_node parent, const char* name) const;
-  std::complex<double> point(pugi::xml_node parent, const char* name) const;
+  /// The place of the only child of that name: easting + i northing in metres. Throws where it
+  /// stands twice or refers to a point that stands elsewhere.
+  std::optional<std::complex<double>> find_place(pugi::xml_node parent, const char* name) const;
+  /// The same; throws where it is missing.
+  std::complex<double> place(pugi::xml_node parent, const char* name) const;
 
  private:
   void read_unit();
-  void check_heights(pugi::xml_node system) const;
 
+  AxisOrder order_;
   double metres_ = 1;
   std::string unit_name_;
   bool imperial_ = false;
 };
-
-/// The name of an element.
-inline std::string_view kind_of(pugi::xml_node node) { return node.name(); }
 
 }  // namespace clearway

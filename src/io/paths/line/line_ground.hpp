@@ -9,11 +9,6 @@
 
 namespace clearway {
 
-/// A stretch of a line, in metres along it.
-struct Reach {
-  double from = 0, to = 0;
-};
-
 /// Puts a path on the ground of the store that the options name: its height becomes the mean of the
 /// ground under the left and the right wheels, and its cant their difference. The height that the
 /// path has is taken as that of the line, if the vertices have heights. Returns the stretch on

@@ -186,7 +186,7 @@ TEST_CASE("elements of a plan that make no sense are refused with their line") {
     line   | <Line length="100"><Start>0 0</Start><End>0.0021 100</End></Line>     | line 7 ... ends 0.0021 m from where the next ... --max-gap 0.0021
     line   | <Line length="95"><Start>0 0</Start><End>0 95</End></Line>            | ends 5 m from where
     line   | <Line length="100.003"><Start>0 0</Start><End>0 100</End></Line>      | does not fit its ends ... 0.003 m ... --max-gap 0.003
-    line   | <Line length="-5"><Start>0 0</Start><End>0 100</End></Line>           | line 7: XML element "Line": has the length -5 m
+    line   | <Line length="-5"><Start>0 0</Start><End>0 100</End></Line>           | line 7: XML element "Line": has length="-5"; expected 0 or more
     line   | <Line length="100"><Start pntRef="P1"/><End>0 100</End></Line>        | pntRef
     line   | <IrregularLine/> | XML element "IrregularLine" ... expected Line, Curve or Spiral
     line   | <Chain/>         | XML element "Chain" ... expected Line, Curve or Spiral
@@ -196,7 +196,7 @@ TEST_CASE("elements of a plan that make no sense are refused with their line") {
     curve  | <Curve rot="ccw" radius="50.01" length="78.539816339745"><Start>0 100</Start><Center>50 100</Center><End>50 150</End></Curve> | XML element "Curve": does not fit its ends
     curve  | <Curve rot="ccw" radius="50" length="314.159265"><Start>0 100</Start><Center>50 100</Center><End>0 100</End></Curve> | closed curves
     curve  | <Curve rot="ccw" radius="50" length="315"><Start>0 100</Start><Center>50 100</Center><End>0 101</End></Curve>        | 360. ... closed curves
-    spiral | rot="cw" radiusStart="INF" radiusEnd="90" spiType="bloss"    | type "bloss" ... expected clothoid
+    spiral | rot="cw" radiusStart="INF" radiusEnd="90" spiType="bloss"    | spiType="bloss" ... expected clothoid
     spiral | rot="cw" radiusStart="INF" radiusEnd="90"                    | spiType
     spiral | rot="cw" radiusEnd="90" spiType="clothoid"                   | radiusStart
     spiral | rot="cw" radiusStart="-4" radiusEnd="90" spiType="clothoid"  | radiusStart="-4"
