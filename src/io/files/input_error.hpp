@@ -20,6 +20,14 @@ namespace clearway {
 [[noreturn]] void refuse_line(const std::string& name, std::uint64_t line, const std::string& what,
                               Remedy remedy = Remedy::kNone);
 
+/// A position in a file, for messages.
+struct FilePlace {
+  const char* unit;  ///< "line", counted from 1, or "byte", counted from 0
+  std::uint64_t number;
+
+  std::string text() const { return unit + (" " + std::to_string(number)); }
+};
+
 /// Throws InputError, with what to do, for a file of another kind that no command reads as text,
 /// such as a spreadsheet, a shapefile or a GeoPackage. first: its first 16 bytes, or fewer.
 void refuse_foreign(const std::string& name, std::string_view first);

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <utility>
 
-#include "core/geometry/predicate.hpp"
 #include "core/util/disjoint_sets.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
@@ -23,8 +22,6 @@ struct EdgeUse {
   std::uint32_t low, high;  ///< indices of the two vertices
   std::uint32_t triangle;
   bool upwards;  ///< whether the triangle runs from low to high
-
-  auto ends() const { return std::tie(low, high); }
 };
 
 bool is_flat(const Corners& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
@@ -70,7 +67,10 @@ std::uint64_t leave_out_duplicates(std::vector<Corners>& triangles) {
   return left_out;
 }
 
-std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangles) {
+/// Calls visit(uses of one edge) for every edge, which flat triangles do not have. The uses of an
+/// edge are in the order of their triangles.
+template <typename Visit>
+void for_each_edge(const std::vector<Corners>& triangles, Visit visit) {
   std::vector<EdgeUse> uses;
   uses.reserve(3 * triangles.size());
   for (std::uint32_t i = 0; i < triangles.size(); ++i) {
@@ -80,62 +80,53 @@ std::vector<EdgeUse> edge_uses(const std::vector<Corners>& triangles) {
       uses.push_back({std::min(from, to), std::max(from, to), i, from < to});
     }
   }
-  std::sort(uses.begin(), uses.end(), [](const EdgeUse& a, const EdgeUse& b) {
-    return std::tie(a.low, a.high, a.triangle) < std::tie(b.low, b.high, b.triangle);
-  });
-  return uses;
-}
-
-/// Calls visit(uses of one edge) for every edge. The uses must be sorted by edge.
-template <typename Visit>
-void for_each_edge(std::span<const EdgeUse> uses, Visit visit) {
+  std::ranges::sort(uses, {},
+                    [](const EdgeUse& use) { return std::tuple(use.low, use.high, use.triangle); });
   for (std::size_t begin = 0, end = 0; begin < uses.size(); begin = end) {
-    while (end < uses.size() && uses[end].ends() == uses[begin].ends()) ++end;
-    visit(uses.subspan(begin, end - begin));
+    while (end < uses.size() && uses[end].low == uses[begin].low &&
+           uses[end].high == uses[begin].high) {
+      ++end;
+    }
+    visit(std::span<const EdgeUse>(uses).subspan(begin, end - begin));
   }
 }
 
-/// Whether an edge keeps its part from being a solid; if so, `fault` is how.
-bool is_faulty(std::span<const EdgeUse> edge, EdgeFault& fault) {
-  fault = edge.size() == 1  ? EdgeFault::kOpen
-          : edge.size() > 2 ? EdgeFault::kCrowded
-                            : EdgeFault::kSameWay;
-  return edge.size() != 2 || edge[0].upwards == edge[1].upwards;
-}
-
-void note(FaultyEdges& edges, const Vec3& from, const Vec3& to) {
-  ++edges.count;
-  if (edges.first.size() < FaultyEdges::kMostShown) edges.first.push_back({from, to});
+/// What keeps the part of an edge from being a solid; nullopt where the edge is sound.
+std::optional<EdgeFault> fault_of(std::span<const EdgeUse> edge) {
+  if (edge.size() == 1) return EdgeFault::kOpen;
+  if (edge.size() > 2) return EdgeFault::kCrowded;
+  if (edge[0].upwards == edge[1].upwards) return EdgeFault::kSameWay;
+  return std::nullopt;
 }
 
 /// Least number of triangles of a solid; with fewer, a closed part encloses nothing.
 constexpr std::uint32_t kLeastOfSolid = 4;
 
-/// Numbers the solids. faulty: whether a part has a faulty edge, by the part's first triangle.
-void number_solids(DisjointSets& finder, const std::vector<bool>& faulty, MeshParts& parts) {
-  const auto count = static_cast<std::uint32_t>(parts.mesh.triangles.size());
+/// Numbers the solids. sets: the triangles of each part. faulty: triangles with a faulty edge,
+/// among them one at least of each part that has one.
+void number_solids(DisjointSets& sets, const std::vector<bool>& faulty, MeshParts& parts) {
+  const std::vector<Corners>& triangles = parts.mesh.triangles;
+  const auto count = static_cast<std::uint32_t>(triangles.size());
   std::vector<std::uint32_t> size_of(count), number_of(count, kNoSolid);
+  std::vector<bool> open(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (!is_flat(parts.mesh.triangles[i])) ++size_of[finder.root(i)];
+    if (is_flat(triangles[i])) continue;
+    ++size_of[sets.root(i)];
+    if (faulty[i]) open[sets.root(i)] = true;
   }
   for (std::uint32_t i = 0; i < count; ++i) {
-    if (size_of[i] >= kLeastOfSolid && !faulty[i]) {
+    if (size_of[i] >= kLeastOfSolid && !open[i]) {
       number_of[i] = parts.solids++;
     } else {
       parts.surface_parts += size_of[i] > 0 ? 1 : 0;
     }
   }
-  parts.solid_of.resize(count);
   for (std::uint32_t i = 0; i < count; ++i) {
-    const bool flat = is_flat(parts.mesh.triangles[i]);
-    parts.solid_of[i] = flat ? kNoSolid : number_of[finder.root(i)];
+    const bool flat = is_flat(triangles[i]);
+    parts.solid_of.push_back(flat ? kNoSolid : number_of[sets.root(i)]);
     parts.flat += flat ? 1 : 0;
     parts.surface_triangles += parts.solid_of[i] == kNoSolid ? 1 : 0;
   }
-}
-
-std::string shown_place(const Vec3& p) {
-  return "(" + format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z) + ")";
 }
 
 const char* words_for(EdgeFault fault) {
@@ -150,27 +141,36 @@ const char* words_for(EdgeFault fault) {
   return "";
 }
 
+/// The edges with one fault in words, with the places of the first few.
+std::string fault_text(EdgeFault fault, const FaultyEdges& edges) {
+  std::string text = counted(edges.count, "edge") + (edges.count == 1 ? " is " : " are each ") +
+                     words_for(fault) + (edges.count == 1 ? ", from " : ", the first from ");
+  for (std::size_t i = 0; i < edges.first.size(); ++i) {
+    text += (i > 0 ? ", from " : "") + shown_place(edges.first[i][0]) + " to " +
+            shown_place(edges.first[i][1]);
+  }
+  return text;
+}
+
 }  // namespace
 
 MeshParts find_parts(const TriangleMesh& mesh) {
   MeshParts parts;
   parts.mesh = merged(mesh);
+  const std::vector<Vec3>& vertices = parts.mesh.vertices;
   parts.duplicates = leave_out_duplicates(parts.mesh.triangles);
-  const std::vector<EdgeUse> uses = edge_uses(parts.mesh.triangles);
-  DisjointSets finder(parts.mesh.triangles.size());
-  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    for (const EdgeUse& use : edge) finder.join(edge[0].triangle, use.triangle);
-  });
+  DisjointSets sets(parts.mesh.triangles.size());
   std::vector<bool> faulty(parts.mesh.triangles.size());
-  for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
-    EdgeFault fault{};
-    if (!is_faulty(edge, fault)) return;
-    faulty[finder.root(edge[0].triangle)] = true;
-    const auto& vertices = parts.mesh.vertices;
-    note(parts.faulty[static_cast<std::size_t>(fault)], vertices[edge[0].low],
-         vertices[edge[0].high]);
+  for_each_edge(parts.mesh.triangles, [&](std::span<const EdgeUse> edge) {
+    for (const EdgeUse& use : edge) sets.join(edge[0].triangle, use.triangle);
+    const auto fault = fault_of(edge);
+    if (!fault) return;
+    faulty[edge[0].triangle] = true;
+    FaultyEdges& edges = parts.faulty[static_cast<std::size_t>(*fault)];
+    if (edges.count++ >= FaultyEdges::kMostShown) return;
+    edges.first.push_back({vertices[edge[0].low], vertices[edge[0].high]});
   });
-  number_solids(finder, faulty, parts);
+  number_solids(sets, faulty, parts);
   return parts;
 }
 
@@ -194,15 +194,7 @@ std::string faults_of(const MeshParts& parts) {
   std::string text;
   for (const EdgeFault fault : kEdgeFaults) {
     const FaultyEdges& edges = parts.faulty[static_cast<std::size_t>(fault)];
-    if (edges.count == 0) continue;
-    if (!text.empty()) text += "; ";
-    text += format_count(edges.count) + (edges.count == 1 ? " edge is " : " edges are each ") +
-            words_for(fault) + ", ";
-    text += edges.count > 1 ? "the first from " : "from ";
-    for (std::size_t i = 0; i < edges.first.size(); ++i) {
-      if (i > 0) text += ", from ";
-      text += shown_place(edges.first[i][0]) + " to " + shown_place(edges.first[i][1]);
-    }
+    if (edges.count > 0) text += (text.empty() ? "" : "; ") + fault_text(fault, edges);
   }
   return text;
 }
@@ -215,11 +207,10 @@ std::string why_not_closed(const MeshParts& parts) {
                                     " parts " + (parts.surface_parts == 1 ? "is" : "are") +
                                     " not closed";
   for (const EdgeFault fault : kEdgeFaults) {
-    const FaultyEdges& edges = parts.faulty[static_cast<std::size_t>(fault)];
+    FaultyEdges edges = parts.faulty[static_cast<std::size_t>(fault)];
     if (edges.count == 0) continue;
-    return text + ": " + counted(edges.count, "edge") + (edges.count == 1 ? " is " : " are ") +
-           words_for(fault) + ", the first from " + shown_place(edges.first[0][0]) + " to " +
-           shown_place(edges.first[0][1]);
+    edges.first.resize(1);
+    return text + ": " + fault_text(fault, edges);
   }
   return text;
 }
@@ -235,99 +226,30 @@ MeshParts parts_with_solids(const TriangleMesh& mesh, const std::string& name) {
                    "each direction; close the mesh, or search it as a surface");
 }
 
-namespace {
-
-using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-struct Edge {
-  std::uint32_t low, high;  ///< indices of the two vertices
-  bool upwards;             ///< whether the edge runs from low to high
-
-  friend bool operator<(const Edge& a, const Edge& b) {
-    return std::tie(a.low, a.high, a.upwards) < std::tie(b.low, b.high, b.upwards);
-  }
-};
-
-/// The triangles of the mesh with equal vertices joined, so that no two are at the same place.
-Triangles welded(const TriangleMesh& mesh) {
-  std::vector<Vec3> places;
-  VertexWelder welder(places);
-  std::vector<std::uint32_t> numbers;
-  numbers.reserve(mesh.vertices.size());
-  for (const Vec3& vertex : mesh.vertices) numbers.push_back(welder.number_of(vertex));
-  Triangles triangles = mesh.triangles;
-  for (auto& triangle : triangles) {
-    for (std::uint32_t& corner : triangle) corner = numbers[corner];
-  }
-  return triangles;
-}
-
-double area_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = difference(b, a), v = difference(c, a);
-  return std::hypot(u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x) / 2;
-}
-
-std::vector<Edge> edges_of(const Triangles& triangles) {
-  std::vector<Edge> edges;
-  for (const auto& [a, b, c] : triangles) {
-    if (a == b || b == c || c == a) continue;
-    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
-      edges.push_back({std::min(from, to), std::max(from, to), from < to});
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-void count_edges(std::span<const Edge> edges, MeshFacts& facts) {
-  for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].low == edges[begin].low &&
-           edges[end].high == edges[begin].high) {
-      ++end;
-    }
-    ++facts.edges;
-    if (end - begin == 1) ++facts.open_edges;
-    if (end - begin > 2) ++facts.crowded_edges;
-    if (end - begin == 2 && edges[begin].upwards == edges[begin + 1].upwards) {
-      ++facts.flipped_edges;
-    }
-  }
-}
-
-std::uint64_t count_parts(const Triangles& triangles, std::size_t vertices) {
-  std::vector<std::uint32_t> root(vertices);
-  std::iota(root.begin(), root.end(), 0u);
-  const auto find = [&root](std::uint32_t v) {
-    while (root[v] != v) v = root[v] = root[root[v]];
-    return v;
-  };
-  std::uint64_t parts = 0;
-  std::vector<bool> seen(vertices);
-  for (const auto& triangle : triangles) {
-    for (const std::uint32_t corner : triangle) {
-      if (!seen[corner]) ++parts;
-      seen[corner] = true;
-      const std::uint32_t a = find(corner), b = find(triangle[0]);
-      if (a == b) continue;
-      root[std::max(a, b)] = std::min(a, b);
-      --parts;
-    }
-  }
-  return parts;
-}
-
-}  // namespace
-
 MeshFacts facts_of(const TriangleMesh& mesh) {
   MeshFacts facts;
   for (const auto& [a, b, c] : mesh.triangles) {
-    const double area = area_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    const Vec3& corner = mesh.vertices[a];
+    const Vec3 normal = cross(mesh.vertices[b] - corner, mesh.vertices[c] - corner);
+    const double area = std::hypot(normal.x, normal.y, normal.z) / 2;
     facts.area += area;
     if (!(area > 0)) ++facts.flat_triangles;
   }
-  const Triangles triangles = welded(mesh);
-  count_edges(edges_of(triangles), facts);
-  facts.parts = count_parts(triangles, mesh.vertices.size());
+  const std::vector<Corners> triangles = merged(mesh).triangles;
+  std::uint64_t* const faulty[] = {&facts.open_edges, &facts.crowded_edges, &facts.flipped_edges};
+  for_each_edge(triangles, [&](std::span<const EdgeUse> edge) {
+    ++facts.edges;
+    if (const auto fault = fault_of(edge)) ++*faulty[static_cast<std::size_t>(*fault)];
+  });
+  DisjointSets sets(mesh.vertices.size());
+  std::vector<bool> used(mesh.vertices.size());
+  for (const Corners& triangle : triangles) {
+    for (const std::uint32_t corner : triangle) {
+      sets.join(triangle[0], corner);
+      used[corner] = true;
+    }
+  }
+  for (std::uint32_t i = 0; i < used.size(); ++i) facts.parts += used[i] && sets.root(i) == i;
   return facts;
 }
 

@@ -58,9 +58,8 @@ void append(const PointBatch& batch, const CloudInfo& info, std::uint64_t first,
     }
     const Vec3& p = batch.positions[i];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-      refuse(name, "model point " + std::to_string(first + i) + " (counted from 0) is (" +
-                       format_number(p.x) + ", " + format_number(p.y) + ", " + format_number(p.z) +
-                       "); expected finite coordinates");
+      refuse(name, "model point " + std::to_string(first + i) + " (counted from 0) is " +
+                       shown_place(p) + "; expected finite coordinates");
     }
     points.push_back(p);
   }
@@ -172,10 +171,9 @@ void scale(ModelInput& input, const ModelOptions& options) {
   for (Vec3& p : input.mesh.vertices) {
     const Vec3 place{scaled(p.x), scaled(p.y), scaled(p.z)};
     if (!std::isfinite(place.x) || !std::isfinite(place.y) || !std::isfinite(place.z)) {
-      refuse(input.path.string(), "(" + format_number(p.x) + ", " + format_number(p.y) + ", " +
-                                      format_number(p.z) +
-                                      ") is too large in the environment's unit; expected finite "
-                                      "coordinates");
+      refuse(
+          input.path.string(),
+          shown_place(p) + " is too large in the environment's unit; expected finite coordinates");
     }
     p = place;
     largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});

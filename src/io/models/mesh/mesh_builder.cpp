@@ -170,6 +170,11 @@ class EarCutter {
 
 }  // namespace
 
+std::string shown_place(const Vec3& place) {
+  return "(" + format_number(place.x) + ", " + format_number(place.y) + ", " +
+         format_number(place.z) + ")";
+}
+
 bool is_fan(std::span<const Vec3> corners) {
   return is_fan(projected(corners, polygon_normal(corners)));
 }
@@ -199,15 +204,27 @@ void MeshBuilder::refuse_at(const FilePlace& at, const std::string& what) const 
   refuse(name_, at.text() + ": " + what);
 }
 
-void MeshBuilder::add_vertex(const Vec3& vertex, const FilePlace& at) {
+void MeshBuilder::check_vertex(const Vec3& vertex, const FilePlace& at) const {
   if (!std::isfinite(vertex.x) || !std::isfinite(vertex.y) || !std::isfinite(vertex.z)) {
-    refuse_at(at, "vertex (" + format_number(vertex.x) + ", " + format_number(vertex.y) + ", " +
-                      format_number(vertex.z) + "); expected finite coordinates");
+    refuse_at(at, "vertex " + shown_place(vertex) + "; expected finite coordinates");
   }
   if (vertices() > std::numeric_limits<std::uint32_t>::max() - 1) {
     refuse_at(at, "more than 4,294,967,295 vertices; expected fewer");
   }
+}
+
+void MeshBuilder::add_vertex(const Vec3& vertex, const FilePlace& at) {
+  check_vertex(vertex, at);
   file_.mesh.vertices.push_back(vertex);
+}
+
+void MeshBuilder::add_triangle(const std::array<Vec3, 3>& corners, const FilePlace& at) {
+  std::array<std::uint32_t, 3> triangle{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    check_vertex(corners[i], at);
+    triangle[i] = welder_.number_of(corners[i]);
+  }
+  file_.mesh.triangles.push_back(triangle);
 }
 
 std::uint32_t MeshBuilder::checked(std::int64_t vertex, const char* what,

@@ -9,6 +9,7 @@
 
 #include "clearway/file_unit.hpp"
 #include "clearway/vec3.hpp"
+#include "io/files/input_error.hpp"
 
 namespace clearway {
 
@@ -43,8 +44,6 @@ struct MeshFile {
 /// Gives equal positions the same index, in the order of their first use. -0 equals 0.
 class VertexWelder {
  public:
-  static constexpr std::uint32_t kMostVertices = 4'000'000'000;
-
   /// vertices: the distinct positions by their index. It must outlive this object and be changed by
   /// it alone.
   explicit VertexWelder(std::vector<Vec3>& vertices) : vertices_(vertices), table_(1024, kFree) {}
@@ -92,6 +91,9 @@ class VertexWelder {
   std::vector<std::uint32_t> table_;
 };
 
+/// A place for messages, as "(1, 2.5, 0)".
+std::string shown_place(const Vec3& place);
+
 /// A polygon cut into triangles.
 struct CutPolygon {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices of corners within the polygon
@@ -112,24 +114,18 @@ bool is_fan(std::span<const Vec3> corners);
 /// at most kMostCornersToCut corners. Source: G. Meisters, Polygons have ears, 1975.
 CutPolygon cut_polygon(std::span<const Vec3> corners);
 
-/// A position in a file, for messages.
-struct FilePlace {
-  const char* unit;  ///< "line", counted from 1, or "byte", counted from 0
-  std::uint64_t number;
-
-  std::string text() const { return unit + (" " + std::to_string(number)); }
-};
-
 /// Collects the vertices, faces, lines and single points of a file, and refuses what cannot be part
 /// of a mesh. Memory grows with what is added, never with what a file declares.
 class MeshBuilder {
  public:
   /// name: the file's, for messages.
   explicit MeshBuilder(std::string name) : name_(std::move(name)) {}
+  MeshBuilder(const MeshBuilder&) = delete;
+  MeshBuilder& operator=(const MeshBuilder&) = delete;
 
   std::size_t vertices() const { return file_.mesh.vertices.size(); }
-  std::size_t triangles() const { return file_.mesh.triangles.size(); }
   MeshRemarks& remarks() { return file_.remarks; }
+  void set_unit(const FileUnit& unit) { file_.unit = unit; }
 
   /// Adds a vertex. Throws InputError for a coordinate that is not finite.
   void add_vertex(const Vec3& vertex, const FilePlace& at);
@@ -140,6 +136,9 @@ class MeshBuilder {
   /// no vertex has.
   void add_line(std::span<const std::int64_t> vertices, const FilePlace& at);
   void add_point(std::int64_t vertex, const FilePlace& at);
+  /// Adds a triangle of a file that repeats positions: equal ones become one vertex. Throws as
+  /// add_vertex() does.
+  void add_triangle(const std::array<Vec3, 3>& corners, const FilePlace& at);
   MeshFile finish() { return std::move(file_); }
 
   [[noreturn]] void refuse_at(const FilePlace& at, const std::string& what) const;
@@ -147,10 +146,12 @@ class MeshBuilder {
  private:
   /// The index of a vertex, once checked; `what` names what refers to it, for messages.
   std::uint32_t checked(std::int64_t vertex, const char* what, const FilePlace& at) const;
+  void check_vertex(const Vec3& vertex, const FilePlace& at) const;
   void add_polygon(const FilePlace& at);
 
   std::string name_;
   MeshFile file_;
+  VertexWelder welder_{file_.mesh.vertices};
   std::vector<std::uint32_t> corners_;
   std::vector<Vec3> places_;
 };

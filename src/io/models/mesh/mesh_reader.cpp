@@ -12,42 +12,19 @@
 namespace clearway {
 namespace {
 
-struct OtherFormat {
-  std::string_view ending;
+/// Formats of meshes and drawings that are not read, with the endings of their names.
+constexpr struct {
+  std::string_view endings;
   const char* name;
-};
-
-constexpr OtherFormat kOtherFormats[] = {{".gltf", "glTF"},
-                                         {".glb", "glTF"},
-                                         {".dae", "COLLADA"},
-                                         {".ifc", "IFC"},
-                                         {".step", "STEP"},
-                                         {".stp", "STEP"},
-                                         {".iges", "IGES"},
-                                         {".igs", "IGES"},
-                                         {".fbx", "FBX"},
-                                         {".3ds", "3DS"},
-                                         {".dxf", "DXF"},
-                                         {".dwg", "DWG"},
-                                         {".x3d", "X3D"},
-                                         {".wrl", "VRML"},
-                                         {".3mf", "3MF"},
-                                         {".blend", "Blender"},
-                                         {".skp", "SketchUp"},
-                                         {".usd", "USD"},
-                                         {".usda", "USD"},
-                                         {".usdc", "USD"},
-                                         {".usdz", "USD"},
-                                         {".jt", "JT"},
-                                         {".amf", "AMF"},
-                                         {".vtk", "VTK"},
-                                         {".vtp", "VTK"},
-                                         {".msh", "Gmsh"},
-                                         {".sldprt", "SolidWorks"},
-                                         {".rvt", "Revit"},
-                                         {".3dm", "Rhino"},
-                                         {".x_t", "Parasolid"},
-                                         {".mtl", "a material of OBJ"}};
+} kOtherFormats[] = {
+    {" .gltf .glb ", "glTF"}, {" .dae ", "COLLADA"},       {" .ifc ", "IFC"},
+    {" .step .stp ", "STEP"}, {" .iges .igs ", "IGES"},    {" .fbx ", "FBX"},
+    {" .3ds ", "3DS"},        {" .dxf ", "DXF"},           {" .dwg ", "DWG"},
+    {" .x3d ", "X3D"},        {" .wrl ", "VRML"},          {" .3mf ", "3MF"},
+    {" .blend ", "Blender"},  {" .skp ", "SketchUp"},      {" .usd .usda .usdc .usdz ", "USD"},
+    {" .jt ", "JT"},          {" .amf ", "AMF"},           {" .vtk .vtp ", "VTK"},
+    {" .msh ", "Gmsh"},       {" .sldprt ", "SolidWorks"}, {" .rvt ", "Revit"},
+    {" .3dm ", "Rhino"},      {" .x_t ", "Parasolid"},     {" .mtl ", "a material of OBJ"}};
 
 [[noreturn]] void refuse_format(const File& file, const char* format) {
   refuse(file.name(), std::string(format) +
@@ -84,24 +61,15 @@ std::optional<MeshFormat> mesh_format_of(const File& file, const std::filesystem
   if (const auto format = format_of_text(text)) return format;
   if (ending == ".obj") return MeshFormat::kObj;
   if (ending == ".off") return MeshFormat::kOff;
-  for (const OtherFormat& other : kOtherFormats) {
-    if (other.ending == ending) refuse_format(file, other.name);
+  for (const auto& [endings, name] : kOtherFormats) {
+    if (endings.find(" " + ending + " ") != std::string_view::npos) refuse_format(file, name);
   }
   return std::nullopt;
 }
 
 MeshFile read_mesh(InputBuffer input, MeshFormat format) {
-  switch (format) {
-    case MeshFormat::kStl:
-      return read_stl(std::move(input));
-    case MeshFormat::kObj:
-      return read_obj(std::move(input));
-    case MeshFormat::kOff:
-      return read_off(std::move(input));
-    case MeshFormat::kPly:
-      break;
-  }
-  return read_ply_mesh(std::move(input));
+  constexpr MeshFile (*kReaders[])(InputBuffer) = {read_stl, read_obj, read_off, read_ply_mesh};
+  return kReaders[static_cast<std::size_t>(format)](std::move(input));
 }
 
 }  // namespace clearway

@@ -3,29 +3,21 @@
 #include <string>
 
 #include "clearway/error.hpp"
+#include "io/files/file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
-namespace {
-
-bool ends_in(const std::filesystem::path& path, const char* extension) {
-  std::string own = path.extension().string();
-  for (char& c : own) c = static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  return own == extension;
-}
-
-}  // namespace
-
 void check_mesh_name(const std::filesystem::path& path) {
-  if (ends_in(path, ".off") || ends_in(path, ".ply")) return;
+  const std::string ending = file_ending(path);
+  if (ending == ".off" || ending == ".ply") return;
   throw UsageError(path.string() + ": expected a name that ends in .off or .ply, for a mesh");
 }
 
 void write_mesh(const Model& model, const std::filesystem::path& path, const File& file) {
   check_mesh_name(path);
   TextWriter out(file);
-  if (ends_in(path, ".off")) {
+  if (file_ending(path) == ".off") {
     out << "OFF\n# " << kUnitComment << "m\n"
         << model.vertices.size() << " " << model.triangles.size() << " 0\n";
   } else {

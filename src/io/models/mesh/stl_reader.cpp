@@ -2,19 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <initializer_list>
 #include <string>
 #include <string_view>
-#include <utility>
-#include <vector>
 
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
-#include "io/files/text_number.hpp"
-#include "io/models/mesh/mesh_builder.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/models/mesh/mesh_text.hpp"
 #include "io/scans/text_copy.hpp"
 
 namespace clearway {
@@ -23,62 +18,29 @@ namespace {
 constexpr std::uint64_t kHeaderBytes = 84;    // 80 bytes of text, then the number of triangles
 constexpr std::uint64_t kTriangleBytes = 50;  // normal, three vertices, two bytes of any use
 
-/// Builds a mesh of triangles whose corners repeat their positions; equal positions become one
-/// vertex.
-class StlMesh {
- public:
-  explicit StlMesh(std::string name) : name_(std::move(name)) {}
-
-  void add(const std::array<Vec3, 3>& corners, const FilePlace& at) {
-    std::array<std::uint32_t, 3> triangle{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const Vec3& corner = corners[i];
-      if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z)) {
-        refuse(name_, at.text() + ": vertex (" + format_number(corner.x) + ", " +
-                          format_number(corner.y) + ", " + format_number(corner.z) +
-                          "); expected finite coordinates");
-      }
-      triangle[i] = welder_.number_of(corner);
-    }
-    if (file_.mesh.vertices.size() > VertexWelder::kMostVertices) {
-      refuse(name_, at.text() + ": more than 4 thousand million vertices; expected fewer");
-    }
-    file_.mesh.triangles.push_back(triangle);
-  }
-
-  MeshFile finish() { return std::move(file_); }
-
- private:
-  std::string name_;
-  MeshFile file_;
-  VertexWelder welder_{file_.mesh.vertices};
-};
-
 MeshFile read_binary_stl(InputBuffer& input, std::uint32_t triangles) {
-  StlMesh mesh(input.name());
+  MeshBuilder mesh(input.name());
   for (std::uint32_t i = 0; i < triangles; ++i) {
     const std::uint64_t start = input.position();
     const auto bytes = input.take(kTriangleBytes);
     if (bytes.empty()) refuse_byte(input.name(), start, "ends within a triangle");
     std::array<Vec3, 3> corners{};
-    for (int corner = 0; corner < 3; ++corner) {
-      for (int k = 0; k < 3; ++k) {
-        corners[static_cast<std::size_t>(corner)][k] =
-            static_cast<double>(load<float>(bytes.data() + 12 + 12 * corner + 4 * k));
-      }
+    const std::byte* at = bytes.data() + 3 * sizeof(float);
+    for (Vec3& corner : corners) {
+      for (int k = 0; k < 3; ++k, at += sizeof(float)) corner[k] = load<float>(at);
     }
-    mesh.add(corners, {"byte", start});
+    mesh.add_triangle(corners, {"byte", start});
   }
   return mesh.finish();
 }
 
-class AsciiStlParser {
+class AsciiStlParser : MeshText {
  public:
-  explicit AsciiStlParser(InputBuffer& input) : input_(input), mesh_(input.name()) {}
+  explicit AsciiStlParser(InputBuffer& input) : MeshText(input, '\n') {}
 
   MeshFile parse() {
     bool any = false;
-    while (next_line()) {
+    while (next()) {
       expect({"solid"}, "`solid NAME`");
       any = true;
       read_solid();
@@ -88,19 +50,6 @@ class AsciiStlParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    refuse_line(input_.name(), input_.line(), what);
-  }
-
-  /// Reads the words of the next line that has any; returns false at the end.
-  bool next_line() {
-    do {
-      if (!input_.next_line(line_)) return false;
-      split_fields(line_, ' ', words_);
-    } while (words_.empty());
-    return true;
-  }
-
   bool starts_with(std::initializer_list<std::string_view> keywords) const {
     if (words_.size() < keywords.size()) return false;
     return std::equal(keywords.begin(), keywords.end(), words_.begin(),
@@ -115,15 +64,9 @@ class AsciiStlParser {
     if (!starts_with(keywords)) fail(excerpt(line_) + "; expected " + expected);
   }
 
-  void need_line(const char* expected) {
-    if (next_line()) return;
-    refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + "; expected " +
-                              expected + ". The file may be cut");
-  }
-
   void read_solid() {
     for (;;) {
-      need_line("`facet` or `endsolid`");
+      need("`facet` or `endsolid`");
       if (starts_with({"endsolid"}) || starts_with({"end", "solid"})) return;
       expect({"facet"}, "`facet normal X Y Z` or `endsolid`");
       read_facet();
@@ -131,35 +74,21 @@ class AsciiStlParser {
   }
 
   void read_facet() {
-    need_line("`outer loop`");
+    need("`outer loop`");
     expect({"outer", "loop"}, "`outer loop`");
     std::array<Vec3, 3> corners{};
     for (Vec3& corner : corners) {
-      need_line("`vertex X Y Z`");
-      read_vertex(corner);
+      need("`vertex X Y Z`");
+      expect({"vertex"}, "`vertex X Y Z`");
+      corner = coordinates(1, 4, "`vertex X Y Z`");
     }
-    const FilePlace last{"line", input_.line()};
-    need_line("`endloop`");
+    const FilePlace last = here_;
+    need("`endloop`");
     expect({"endloop"}, "`endloop` behind three vertices");
-    need_line("`endfacet`");
+    need("`endfacet`");
     expect({"endfacet"}, "`endfacet`");
-    mesh_.add(corners, last);
+    mesh_.add_triangle(corners, last);
   }
-
-  void read_vertex(Vec3& corner) const {
-    bool valid = starts_with({"vertex"}) && words_.size() == 4;
-    for (std::size_t k = 0; valid && k < 3; ++k) {
-      const auto value = parse_whole_number(words_[k + 1]);
-      valid = value.has_value();
-      if (value) corner[static_cast<int>(k)] = *value;
-    }
-    if (!valid) fail(excerpt(line_) + "; expected `vertex X Y Z`");
-  }
-
-  InputBuffer& input_;
-  std::string_view line_;
-  std::vector<std::string_view> words_;
-  StlMesh mesh_;
 };
 
 /// The start of a file as that of a binary one: its declared number of triangles, 0 where the file

@@ -1,8 +1,8 @@
 #include "io/scans/ply/ply_header.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <string_view>
 #include <utility>
@@ -17,16 +17,17 @@ namespace {
 constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
 constexpr std::size_t kLargestElement = std::size_t{1} << 16;     // bytes
 
+/// The types by PlyType, with the name of 1994 and the later one.
+constexpr struct {
+  std::string_view name, later_name;
+  std::size_t bytes;
+} kTypes[] = {{"char", "int8", 1},     {"uchar", "uint8", 1},   {"short", "int16", 2},
+              {"ushort", "uint16", 2}, {"int", "int32", 4},     {"uint", "uint32", 4},
+              {"float", "float32", 4}, {"double", "float64", 8}};
+
 std::optional<PlyType> type_named(std::string_view name) {
-  static constexpr std::pair<std::string_view, PlyType> kTypes[] = {
-      {"char", PlyType::kInt8},      {"int8", PlyType::kInt8},       {"uchar", PlyType::kUint8},
-      {"uint8", PlyType::kUint8},    {"short", PlyType::kInt16},     {"int16", PlyType::kInt16},
-      {"ushort", PlyType::kUint16},  {"uint16", PlyType::kUint16},   {"int", PlyType::kInt32},
-      {"int32", PlyType::kInt32},    {"uint", PlyType::kUint32},     {"uint32", PlyType::kUint32},
-      {"float", PlyType::kFloat32},  {"float32", PlyType::kFloat32}, {"double", PlyType::kFloat64},
-      {"float64", PlyType::kFloat64}};
-  for (const auto& [spelling, type] : kTypes) {
-    if (spelling == name) return type;
+  for (std::size_t i = 0; i < std::size(kTypes); ++i) {
+    if (name == kTypes[i].name || name == kTypes[i].later_name) return static_cast<PlyType>(i);
   }
   return std::nullopt;
 }
@@ -119,15 +120,9 @@ class HeaderParser {
   }
 
   void add_element(const std::vector<std::string_view>& words) {
-    std::uint64_t count = 0;
-    bool valid = words.size() == 3;
-    if (valid) {
-      const char* const end = words[2].data() + words[2].size();
-      const auto [stop, error] = std::from_chars(words[2].data(), end, count);
-      valid = error == std::errc() && stop == end;
-    }
-    if (!valid) fail("expected `element NAME COUNT`");
-    header_.elements.push_back({std::string(words[1]), count, {}});
+    const auto count = words.size() == 3 ? parse_count(words[2]) : std::nullopt;
+    if (!count) fail("expected `element NAME COUNT`");
+    header_.elements.push_back({std::string(words[1]), *count, {}});
   }
 
   void add_property(const std::vector<std::string_view>& words) {
@@ -166,31 +161,26 @@ class HeaderParser {
     }
   }
 
-  void find_vertices() {
-    std::optional<std::size_t> vertex;
-    for (std::size_t i = 0; i < header_.elements.size(); ++i) {
-      if (header_.elements[i].name != "vertex") continue;
-      if (vertex) fail("two elements named vertex; expected one");
-      vertex = i;
-    }
-    if (!vertex) fail("no element named vertex; expected one with x, y and z");
-    header_.vertex = *vertex;
-    for (std::size_t axis = 0; axis < 3; ++axis) header_.coordinates[axis] = find_coordinate(axis);
+  /// The index of the only element or property of a name. what: the words for it.
+  template <typename Named>
+  std::size_t only(const std::vector<Named>& all, std::string_view name,
+                   const std::string& what) const {
+    const auto found = std::ranges::find(all, name, &Named::name);
+    const auto count = std::ranges::count(all, name, &Named::name);
+    if (count != 1) fail((count == 0 ? "no " : "more than one ") + what);
+    return static_cast<std::size_t>(found - all.begin());
   }
 
-  std::size_t find_coordinate(std::size_t axis) const {
-    const std::string name(1, static_cast<char>('x' + axis));
-    std::optional<std::size_t> found;
-    const auto& properties = header_.vertices().properties;
-    for (std::size_t i = 0; i < properties.size(); ++i) {
-      if (properties[i].name != name) continue;
-      if (found || properties[i].list_count) {
-        fail("expected one property " + name + " of the element vertex, not a list");
-      }
-      found = i;
+  void find_vertices() {
+    header_.vertex =
+        only(header_.elements, "vertex", "element named vertex; expected one with x, y and z");
+    const std::vector<PlyProperty>& properties = header_.vertices().properties;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::string name(1, static_cast<char>('x' + axis));
+      const std::string what = "property " + name + " of the element vertex; expected x, y and z";
+      header_.coordinates[axis] = only(properties, name, what);
+      if (properties[header_.coordinates[axis]].list_count) fail("a list as " + what);
     }
-    if (!found) fail("element vertex has no property " + name + "; expected x, y and z");
-    return *found;
   }
 
   InputBuffer& input_;
@@ -199,23 +189,7 @@ class HeaderParser {
 
 }  // namespace
 
-std::size_t size_bytes(PlyType type) {
-  switch (type) {
-    case PlyType::kInt8:
-    case PlyType::kUint8:
-      return 1;
-    case PlyType::kInt16:
-    case PlyType::kUint16:
-      return 2;
-    case PlyType::kInt32:
-    case PlyType::kUint32:
-    case PlyType::kFloat32:
-      return 4;
-    case PlyType::kFloat64:
-      break;
-  }
-  return 8;
-}
+std::size_t size_bytes(PlyType type) { return kTypes[static_cast<std::size_t>(type)].bytes; }
 
 std::optional<std::size_t> PlyElement::fixed_bytes() const {
   for (const PlyProperty& property : properties) {
