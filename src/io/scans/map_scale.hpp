@@ -1,8 +1,11 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
+
+#include "clearway/vec3.hpp"
+#include "core/geometry/angle.hpp"
+#include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 
@@ -23,15 +26,27 @@ inline constexpr double kMapScaleWarning = 2e-3;
 /// Error of lengths above which a map is refused as a scan's system.
 inline constexpr double kMostMapScale = 0.05;
 
+/// A conversion by PROJ from longitudes and latitudes to a map, with its derivatives.
+struct MapConversion {
+  ProjObject operation;                      ///< null where PROJ has none
+  double angle = kDegree;                    ///< radians per unit of longitudes and latitudes
+  double semi_major = 0, eccentricity2 = 0;  ///< of the ellipsoid
+  /// Radians to either side of a place over which the map is differentiated: some 10 m, over which
+  /// a map bends by less than 1e-10.
+  double step = 1e-6;
+
+  /// The vector on the map, in its unit, of a metre on the ellipsoid to true north, or else to the
+  /// east. Nullopt outside of the map.
+  std::optional<Vec3> slope(double longitude, double latitude, double height, bool to_north) const;
+};
+
 /// A projected coordinate reference system, which shows the ellipsoid on a plane.
 class ScanMap {
  public:
   /// The map of a system in a form that scan_crs_of() reads. Nullopt where the text is no map:
   /// geographic, geocentric and local systems, and texts that PROJ does not read.
   static std::optional<ScanMap> of(const std::string& crs);
-  ~ScanMap();
-  ScanMap(ScanMap&&) noexcept;
-  ScanMap& operator=(ScanMap&&) noexcept;
+  ScanMap(ScanMap&&) = default;
 
   /// The scale at a place. easting, northing: in the unit of the map. Nullopt where it is not
   /// known: the map does not reach the place, or PROJ cannot compute its projection.
@@ -41,10 +56,10 @@ class ScanMap {
   double metres_per_unit() const { return unit_; }
 
  private:
-  struct Parts;
-  explicit ScanMap(std::unique_ptr<Parts> parts);
+  ScanMap() = default;
 
-  std::unique_ptr<Parts> parts_;
+  ProjContext context_;
+  MapConversion conversion_;  ///< has no operation where PROJ would have to open a file for it
   std::string name_;
   double unit_ = 1;
 };

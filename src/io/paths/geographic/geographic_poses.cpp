@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/geometry/angle.hpp"
 #include "core/messages/messages.hpp"
@@ -15,16 +16,14 @@ namespace clearway {
 namespace {
 
 struct Range {
-  double least = 0, greatest = 0;
-  bool empty = true;
+  double least = std::numeric_limits<double>::infinity(), greatest = -least;
 
   void add(double value) {
-    least = empty ? value : std::min(least, value);
-    greatest = empty ? value : std::max(greatest, value);
-    empty = false;
+    least = std::min(least, value);
+    greatest = std::max(greatest, value);
   }
-  std::string text() const {
-    const std::string from = format_digits(least, 6), to = format_digits(greatest, 6);
+  std::string text(double unit = 1) const {
+    const std::string from = format_digits(least / unit, 6), to = format_digits(greatest / unit, 6);
     return from == to ? from : from + " to " + to;
   }
 };
@@ -41,20 +40,6 @@ struct Ranges {
     if (place.scale.error() > worst.error()) worst = place.scale;
   }
 };
-
-MapProjection open_projection(const TrajectoryOptions& options, const std::string& name) {
-  if (options.crs.empty() && options.default_crs.empty()) {
-    refuse(name,
-           "positions are latitudes and longitudes; expected the projected coordinate reference "
-           "system of the environment",
-           Remedy::kNameCrs);
-  }
-  try {
-    return MapProjection(options);
-  } catch (const InputError& error) {
-    refuse(name, error.what(), error.remedy());
-  }
-}
 
 /// Checks that the map turns all directions at a pose alike, because its rotation uses a single
 /// angle.
@@ -96,9 +81,8 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
   out.note("map-projection",
            name + ": positions are in " + map.name() +
                (options.crs.empty() ? ", as the environment" : "") + "; true north lies " +
-               Range{ranges.north.least / kDegree, ranges.north.greatest / kDegree, false}.text() +
-               " degrees clockwise from its northing; its scale, " + ranges.scale.text() +
-               ", is not applied to the model",
+               ranges.north.text(kDegree) + " degrees clockwise from its northing; its scale, " +
+               ranges.scale.text() + ", is not applied to the model",
            {{"least_scale", ranges.scale.least}, {"greatest_scale", ranges.scale.greatest}});
   const double unit = map.metres_per_unit(), environment = options.environment_unit;
   if (environment != 1 && std::abs(unit - environment) > 1e-9) {
@@ -146,7 +130,7 @@ void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame
                              const TrajectoryOptions& options, const std::string& name,
                              TrajectoryFile& out) {
   if (rows.empty()) return;
-  const MapProjection map = open_projection(options, name);
+  const MapProjection map(options, name);
   check_shape(map, rows[0], name, out);
   Ranges ranges;
   out.poses.reserve(out.poses.size() + rows.size());

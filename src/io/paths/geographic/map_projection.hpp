@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <optional>
 #include <string>
 
@@ -22,12 +21,12 @@ class MapProjection {
     MapScale scale;  ///< scale of the map at the position
   };
 
-  /// Projects to options.crs, or else to options.default_crs. Throws UsageError for an unusable CRS
-  /// given by the caller, InputError for one that came from a file.
-  explicit MapProjection(const TrajectoryOptions& options);
-  ~MapProjection();
-  MapProjection(MapProjection&&) noexcept;
-  MapProjection& operator=(MapProjection&&) noexcept;
+  /// Projects to options.crs, or else to options.default_crs. name: the trajectory's file, for
+  /// messages. Throws UsageError for an unusable CRS given by the caller, InputError for one that
+  /// came from a file and where there is none.
+  MapProjection(const TrajectoryOptions& options, const std::string& name);
+  MapProjection(const MapProjection&) = delete;
+  MapProjection& operator=(const MapProjection&) = delete;
 
   /// The place on the map of a position in degrees and metres; nullopt where the CRS does not
   /// reach.
@@ -46,12 +45,10 @@ class MapProjection {
   double accuracy() const;
 
  private:
-  struct Parts;
-  void open(const std::string& crs, bool from_file, const std::string& datum);
-  bool project(double longitude, double latitude, double height, double (&xyz)[3]) const;
-  Vec3 slope(double longitude, double latitude, double height, bool along_north) const;
-
-  std::unique_ptr<Parts> parts_;
+  std::string log_;  ///< what PROJ says last; must outlive the context
+  ProjContext context_;
+  MapConversion conversion_;
+  std::optional<ScanMap> map_;
   std::string name_;
   double unit_ = 1;           ///< unit of easting and northing, metres
   double vertical_unit_ = 0;  ///< unit of heights, metres; 0 where the CRS has no heights

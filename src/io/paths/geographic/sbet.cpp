@@ -20,50 +20,37 @@ static_assert(std::endian::native == std::endian::little);
 
 constexpr double kHighest = 1e5;  // metres; no scanner flies as high
 
-/// The numbers of a record that make a pose, in radians and metres.
-struct Record {
-  double time, latitude, longitude, altitude, roll, pitch, heading, wander;
-};
+/// A record: time, latitude, longitude, altitude, three velocities, roll, pitch, platform heading,
+/// wander angle and more, in seconds, radians and metres.
+using Record = std::array<double, kSbetRecordBytes / sizeof(double)>;
 
 Record record_of(std::span<const std::byte> bytes) {
-  std::array<double, 17> n;
-  std::memcpy(n.data(), bytes.data(), sizeof n);
-  return {n[0], n[1], n[2], n[3], n[7], n[8], n[9], n[10]};
+  Record record;
+  std::memcpy(record.data(), bytes.data(), sizeof record);
+  return record;
 }
 
 /// Why a record is not a pose; empty where it is one.
 std::string objection_to(const Record& record) {
   constexpr double kTurn = 2 * std::numbers::pi + 1e-6;
+  constexpr double kHalf = std::numbers::pi;
   const struct {
     const char* name;
-    double value, most;
-  } angles[] = {{"latitude", record.latitude, std::numbers::pi / 2},
-                {"longitude", record.longitude, kTurn},
-                {"roll", record.roll, std::numbers::pi + 1e-6},
-                {"pitch", record.pitch, std::numbers::pi / 2 + 1e-6},
-                {"heading", record.heading, kTurn},
-                {"wander angle", record.wander, kTurn}};
+    std::size_t at;
+    double most;
+  } angles[] = {{"latitude", 1, kHalf / 2}, {"longitude", 2, kTurn},
+                {"roll", 7, kHalf + 1e-6},  {"pitch", 8, kHalf / 2 + 1e-6},
+                {"heading", 9, kTurn},      {"wander angle", 10, kTurn}};
   for (const auto& angle : angles) {
-    auto text = objection_to_angle(angle.name, angle.value, angle.most, "SBET");
+    auto text = objection_to_angle(angle.name, record[angle.at], angle.most, "SBET");
     if (!text.empty()) return text;
   }
-  if (!std::isfinite(record.time)) return "expected a finite time";
-  if (!(std::abs(record.altitude) <= kHighest)) {
-    return "altitude " + format_digits(record.altitude, 9) + "; expected metres, within 100 km";
+  if (!std::isfinite(record[0])) return "expected a finite time";
+  if (!(std::abs(record[3]) <= kHighest)) {
+    return "altitude " + format_digits(record[3], 9) + "; expected metres, within 100 km";
   }
-  if (record.latitude == 0 && record.longitude == 0) {
-    return "latitude and longitude are 0; expected a position";
-  }
+  if (record[1] == 0 && record[2] == 0) return "latitude and longitude are 0; expected a position";
   return {};
-}
-
-AttitudeRow row_of(const Record& record) {
-  // The platform's heading is counted in the wander frame, which avoids the singularity at the
-  // poles.
-  return {{record.longitude / kDegree, record.latitude / kDegree, record.altitude},
-          record.roll,
-          record.pitch,
-          record.heading - record.wander};
 }
 
 }  // namespace
@@ -92,8 +79,13 @@ void read_sbet(InputBuffer& input, const TrajectoryOptions& options, TrajectoryF
     if (!objection.empty()) {
       refuse_byte(input.name(), start, "record " + std::to_string(rows.size()) + ": " + objection);
     }
-    rows.push_back(row_of(record));
-    out.labels.time.push_back(record.time);
+    // The platform's heading is counted in the wander frame, which avoids the singularity at the
+    // poles.
+    rows.push_back({{record[2] / kDegree, record[1] / kDegree, record[3]},
+                    record[7],
+                    record[8],
+                    record[9] - record[10]});
+    out.labels.time.push_back(record[0]);
   }
   append_geographic_poses(rows, AngleFrame::kNed, options, input.name(), out);
   out.note("model-frame",
