@@ -229,11 +229,14 @@ TEST_CASE("obstacles are read from the conflicts that were written, with names o
   };
   refused("", "is empty");
   refused("id,lo_x\n1,2\n", "line 1 ... lo_y");
-  refused(head + "\n1,2,3\n", "line 2 ... 3 fields");
+  refused(head + "\n1,2,3\n", "line 2 ... 3 columns; expected 8");
   refused(head + "\n1,2,3,x,5,6,7,8\n", "line 2 ... \"x\"");
   refused(head + "\n1,2,3,nan,5,6,7,8\n", "finite");
   refused(head + "\n1,2,9,4,5,6,7,8\n", "ends before it begins");
   refused(head + "\n\"1,2\n", "quote");
+  refused(head + ",name\n3,10,1,2,3,4,5,6,\"tree\n", "line 2 ... a quote has no end");
+  refused(head + ",lo_x\n3,10,1,2,3,4,5,6,1\n", "line 1 ... two columns for lo_x");
+  refused("id,points,lo_x [ft],lo_y,lo_z,hi_x,hi_y,hi_z\n", "line 1 ... expected no unit");
 }
 
 TEST_CASE("a page refuses what does not belong to its section") {

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 #include <string>
@@ -10,71 +11,53 @@
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
-#include "io/scans/input_buffer.hpp"
 #include "io/scans/text/point_blocks.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
 
-/// Two numbers of a line, and the line's number in the file.
-struct Row {
-  double first, second;
-  std::uint64_t line;
-};
-
-/// The names in a line of names, in small letters and without blanks.
-std::string names_in(std::string_view line) {
-  std::string names;
-  for (const char c : line) {
-    if (is_blank(c) || c == '"') continue;
-    names += c == ';' ? ',' : static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-  }
-  return names;
-}
-
-void check_names(const InputBuffer& input, std::string_view line, bool mirror) {
-  const std::string names = names_in(line);
-  if (names == (mirror ? "height,half_width" : "y,z")) return;
+void check_names(TextTable& table, bool mirror) {
+  constexpr std::string_view kWhole[] = {"y", "z"}, kHalf[] = {"height", "half_width"};
+  const bool whole = table.is_header(kWhole), half = table.is_header(kHalf);
+  if (mirror ? half : whole) return;
   std::string expected = mirror ? "two numbers, or first the names height,half_width"
                                 : "two numbers, or first the names y,z";
-  if (names == "height,half_width")
-    expected += "; one half of a symmetric outline is to be mirrored with --mirror";
-  if (names == "y,z") expected += "; a whole outline is not to be mirrored";
-  refuse_line(input.name(), input.line(),
-              excerpt(line) + decimal_commas_in(line) + "; expected " + expected);
+  if (half) expected += "; one half of a symmetric outline is to be mirrored with --mirror";
+  if (whole) expected += "; a whole outline is not to be mirrored";
+  table.refuse_here(excerpt(table.line()) + decimal_commas_in(table.line()) + "; expected " +
+                    expected);
 }
 
-std::vector<Row> rows_of(const std::filesystem::path& path, bool mirror) {
-  InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  input.begin_text();
-  std::vector<Row> rows;
-  std::string_view line;
-  bool first = true;
-  while (input.next_line(line)) {
-    if (line.find_first_not_of(" \t") == std::string_view::npos) continue;
-    double numbers[2];
-    const auto count = parse_number_line(line, numbers);
-    if (!count && std::exchange(first, false)) {
-      check_names(input, line, mirror);
+/// The corners in a file as it has them, y first.
+std::vector<OutlinePoint> corners_in(const std::filesystem::path& path, bool mirror) {
+  TextTable table(InputBuffer::open_regular(path));
+  std::vector<OutlinePoint> corners;
+  for (bool first = true; table.next(); first = false) {
+    std::array<double, 2> numbers{};
+    const auto count = parse_number_line(table.line(), numbers);
+    if (!count && first) {
+      check_names(table, mirror);
       continue;
     }
-    first = false;
-    if (count != std::size_t{2} || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) {
-      refuse_line(input.name(), input.line(),
-                  excerpt(line) + decimal_commas_in(line) + "; expected two finite numbers");
+    if (count != numbers.size() || !std::isfinite(numbers[0]) || !std::isfinite(numbers[1])) {
+      table.refuse_here(excerpt(table.line()) + decimal_commas_in(table.line()) +
+                        "; expected two finite numbers");
     }
     if (mirror && numbers[1] < 0) {
-      refuse_line(input.name(), input.line(),
-                  excerpt(line) + "; expected half a width of 0 or more after the height");
+      table.refuse_here(excerpt(table.line()) +
+                        "; expected half a width of 0 or more after the height");
     }
-    if (rows.size() == kMostOutlinePoints) {
-      refuse_line(input.name(), input.line(),
-                  "has more corners than " + format_count(kMostOutlinePoints));
+    if (corners.size() == kMostOutlinePoints) {
+      table.refuse_here("has more corners than " + format_count(kMostOutlinePoints));
     }
-    rows.push_back({numbers[0], numbers[1], input.line()});
+    if (mirror) std::swap(numbers[0], numbers[1]);
+    corners.push_back({numbers[0], numbers[1]});
   }
-  if (rows.empty()) refuse(input.name(), "holds no corner of an outline; expected three at least");
-  return rows;
+  if (corners.empty()) {
+    refuse(table.name(), "holds no corner of an outline; expected three at least");
+  }
+  return corners;
 }
 
 /// Whether the outline lies on one side of the vehicle's middle and has an edge on it, as one half
@@ -95,16 +78,11 @@ bool is_half(std::span<const OutlinePoint> outline) {
 std::vector<OutlinePoint> read_outline(const std::filesystem::path& path,
                                        const OutlineOptions& options,
                                        std::vector<Message>* messages) {
-  const std::vector<Row> rows = rows_of(path, options.mirror);
   const double environment = options.environment_unit;
   const UnitFactor lengths(
       options.unit.is_known() ? options.unit.metres_in(environment) : environment, environment);
-  std::vector<OutlinePoint> outline;
-  for (const Row& row : rows) {
-    const OutlinePoint point =
-        options.mirror ? OutlinePoint{row.second, row.first} : OutlinePoint{row.first, row.second};
-    outline.push_back({lengths(point.y), lengths(point.z)});
-  }
+  std::vector<OutlinePoint> outline = corners_in(path, options.mirror);
+  for (OutlinePoint& point : outline) point = {lengths(point.y), lengths(point.z)};
   if (options.mirror) {
     for (std::size_t i = outline.size(); i-- > 0;) {
       if (outline[i].y != 0) outline.push_back({-outline[i].y, outline[i].z});

@@ -14,12 +14,6 @@
 namespace clearway {
 namespace {
 
-InputBuffer open(const std::filesystem::path& path) {
-  File file = File::open_for_reading(path);
-  const auto access = file.is_regular() ? InputBuffer::Access::kSeek : InputBuffer::Access::kStream;
-  return {std::move(file), access};
-}
-
 /// The number NNN of a file "scanNNN" with this ending; nullopt for other names.
 std::optional<std::uint64_t> number_of(const std::filesystem::path& path, std::string_view ending) {
   constexpr std::string_view kScan = "scan";
@@ -59,7 +53,7 @@ void note_frame(const std::string& name, TrajectoryFile& out) {
 }
 
 void read_one(const std::filesystem::path& path, TrajectoryFormat format, TrajectoryFile& out) {
-  InputBuffer input = open(path);
+  InputBuffer input = InputBuffer::open(path);
   out.poses.push_back(format == TrajectoryFormat::kThreedtkFrames ? read_threedtk_frames(input)
                                                                   : read_threedtk_pose(input));
   out.labels.name.push_back(path.filename().string());

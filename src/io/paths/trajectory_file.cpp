@@ -154,9 +154,7 @@ void read_file(const std::filesystem::path& path, TrajectoryOptions options, Tra
     read_threedtk_file(path, options, out);
     return;
   }
-  File file = File::open_for_reading(path);
-  const auto access = file.is_regular() ? InputBuffer::Access::kSeek : InputBuffer::Access::kStream;
-  InputBuffer input(std::move(file), access);
+  InputBuffer input = InputBuffer::open(path);
   if (options.format == TrajectoryFormat::kAuto && holds_sbet(input, ending)) {
     options.format = TrajectoryFormat::kSbet;
   }

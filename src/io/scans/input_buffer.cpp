@@ -35,6 +35,16 @@ InputBuffer::InputBuffer(File file, Access access)
   if (access == Access::kSeek) size_ = file_.size_bytes();
 }
 
+InputBuffer InputBuffer::open(const std::filesystem::path& path) {
+  File file = File::open_for_reading(path);
+  const Access access = file.is_regular() ? Access::kSeek : Access::kStream;
+  return {std::move(file), access};
+}
+
+InputBuffer InputBuffer::open_regular(const std::filesystem::path& path) {
+  return {File::open_regular(path), Access::kSeek};
+}
+
 /// Loads more bytes after those that are not consumed yet. Returns false at the end of the file.
 bool InputBuffer::fill() {
   if (begin_ > 0) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -30,6 +31,10 @@ class InputBuffer {
   /// kSeek needs a regular file and starts at its first byte; kStream starts at the file's current
   /// position.
   InputBuffer(File file, Access access);
+  /// Opens a file: kSeek where it is a regular one, otherwise kStream. Throws ResourceError.
+  static InputBuffer open(const std::filesystem::path& path);
+  /// Opens a file that has to be a regular one, see File::open_regular(). Throws ResourceError.
+  static InputBuffer open_regular(const std::filesystem::path& path);
 
   const std::string& name() const { return file_.name(); }
   /// The underlying file, for readers that also read at positions other than the buffer's.

@@ -15,7 +15,7 @@
 #include "io/files/text_number.hpp"
 #include "io/result/journal.hpp"
 #include "io/scans/point_formats.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {

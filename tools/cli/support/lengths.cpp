@@ -13,7 +13,7 @@
 #include "io/result/result_header.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway::tool {
 namespace {

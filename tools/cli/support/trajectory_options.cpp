@@ -9,7 +9,7 @@
 #include "cli/support/lengths.hpp"
 #include "cli/support/options.hpp"
 #include "core/describe/trajectory.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway::tool {
 namespace {

@@ -1,18 +1,15 @@
 #include "io/paths/line/line_vertices.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <span>
 #include <string_view>
 #include <utility>
 
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/json.hpp"
 #include "io/files/text_number.hpp"
@@ -20,8 +17,7 @@
 #include "io/paths/unread_columns.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/length_unit.hpp"
-#include "io/scans/text/point_blocks.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
@@ -35,6 +31,9 @@ constexpr const char* kTransform =
     "; coordinates in the system of the scan are expected, so transform the line to it first, for "
     "example with ogr2ogr -t_srs or in a GIS";
 
+constexpr std::vector<double> LineVertices::*kCoordinates[] = {&LineVertices::x, &LineVertices::y,
+                                                               &LineVertices::z};
+
 /// Sets the unit of the coordinates. texts: their units in a header, or empty.
 void set_unit(std::span<const std::string> texts, const LineOptions& options,
               const std::string& name, LineVertices& out) {
@@ -43,115 +42,65 @@ void set_unit(std::span<const std::string> texts, const LineOptions& options,
       out.unit.is_known() ? out.unit.metres_in(options.environment_unit) : options.environment_unit;
 }
 
-/// The columns of a table that describe a line.
-struct LineColumns {
-  char separator = ',';
-  std::size_t fields = 0;
-  PlanColumns plan{};
-  std::optional<std::size_t> station{}, cant{};
-  std::string station_unit{}, cant_unit{};
-  std::vector<std::string> unread{};  ///< names of the other columns
-};
-
 constexpr std::string_view kStation[] = {"station", "chainage"}, kCant[] = {"cant"};
 
 /// A line in a table of text.
 class LineTable {
  public:
   LineTable(InputBuffer input, const LineOptions& options)
-      : input_(std::move(input)), name_(input_.name()), options_(options) {}
+      : table_(std::move(input)), options_(options) {}
 
   LineVertices read(Remarks& remarks) {
-    input_.begin_text();
-    std::string_view line;
-    bool cut = false;
-    while (input_.next_line(line)) {
-      line = without_leading_blanks(line);
-      if (line.empty()) continue;
-      if (is_text_comment(line)) {
-        if (!columns_) take_header(line, false);
-      } else if (!started_ && !starts_with_number(line)) {
-        take_header(line, true);
+    bool started = false;
+    while (table_.next()) {
+      if (table_.is_comment()) {
+        if (columns_.empty()) take_header(false);
+      } else if (std::exchange(started, true) || table_.starts_with_number()) {
+        add();
       } else {
-        add(line);
-        cut = !input_.line_terminated() && line.ends_with('.');
+        take_header(true);
       }
-      started_ = started_ || !is_text_comment(line);
     }
-    if (out_.x.empty()) refuse(name_, "holds no vertex of a line; expected at least two");
-    if (cut) {
-      remarks.warn("cut-text",
-                   name_ +
-                       ": the file ends without a line break within a number, so it may be "
-                       "cut",
-                   {{"line", static_cast<double>(input_.line())}});
-    }
-    check_cant();
-    remark_unread_columns(name_, columns_->unread,
-                          columns_->plan.z ? PathTable::kRaisedLine : PathTable::kLine, remarks);
+    if (out_.x.empty()) refuse(table_.name(), "holds no vertex of a line; expected at least two");
+    table_.remark_cut(remarks.remarks);
+    if (!cant_has_unit_) check_cant();
+    remark_unread_columns(table_.name(), unread_,
+                          out_.z.empty() ? PathTable::kLine : PathTable::kRaisedLine, remarks);
     return std::move(out_);
   }
 
  private:
-  static bool starts_with_number(std::string_view line) {
-    const char* at = line.data();
-    double value = 0;
-    return parse_number(at, at + line.size(), value);
-  }
-
-  [[noreturn]] void refuse_here(const std::string& what) const {
-    refuse_line(name_, input_.line(), what);
-  }
+  /// A column, and the list that its numbers go to.
+  struct Column {
+    TableColumn of;
+    std::vector<double> LineVertices::*list;
+  };
 
   /// Takes the columns that a line names. sure: whether it can be nothing but the header.
-  void take_header(std::string_view line, bool sure) {
-    const TableHeader header = parse_table_header(line);
+  void take_header(bool sure) {
+    const TableHeader& header = table_.take_header();
     const auto plan = plan_columns(header);
-    if (!plan) {
-      if (sure) refuse_here(excerpt(line) + objection_to(header, line));
-      return;
-    }
-    LineColumns found{.separator = header.separator, .fields = header.names.size(), .plan = *plan};
-    found.station = optional_column(header, kStation, found.station_unit);
-    found.cant = optional_column(header, kCant, found.cant_unit);
-    for (std::size_t i = 0; i < header.names.size(); ++i) {
-      const bool read =
-          i == plan->x || i == plan->y || i == plan->z || i == found.station || i == found.cant;
-      if (!read && !header.names[i].empty()) found.unread.push_back(header.written[i]);
-    }
+    if (!plan && sure) table_.refuse_here(excerpt(table_.line()) + objection_to(header));
+    if (!plan) return;
     std::vector<std::string> units{header.units[plan->x], header.units[plan->y]};
     if (plan->z) units.push_back(header.units[*plan->z]);
-    set_unit(units, options_, name_, out_);
-    const auto metres_of = [&](const std::string& text, const char* what) {
-      if (text.empty()) return UnitFactor(out_.metres_per_unit);
-      const auto unit = file_unit_of(text);
-      if (!unit) {
-        refuse_here("the header has the " + std::string(what) + " in " + excerpt(text) +
-                    "; expected " + file_unit_list());
-      }
-      return UnitFactor(unit->metres_in(options_.environment_unit));
-    };
-    metres_ = UnitFactor(out_.metres_per_unit);
-    station_metres_ = metres_of(found.station_unit, "station");
-    cant_metres_ = metres_of(found.cant_unit, "cant");
-    columns_ = std::move(found);
+    set_unit(units, options_, table_.name(), out_);
+    const UnitFactor metres(out_.metres_per_unit);
+    columns_ = {{{"x", plan->x, true, metres}, &LineVertices::x},
+                {{"y", plan->y, true, metres}, &LineVertices::y}};
+    if (plan->z) columns_.push_back({{"z", *plan->z, true, metres}, &LineVertices::z});
+    const ColumnUnit lengths{out_.metres_per_unit, options_.environment_unit};
+    const auto station = table_.column(kStation, lengths), cant = table_.column(kCant, lengths);
+    if (station) columns_.push_back({*station, &LineVertices::station});
+    if (cant) columns_.push_back({*cant, &LineVertices::cant});
+    cant_has_unit_ = cant && cant->has_unit;
+    std::vector<std::size_t> used;
+    for (const Column& column : columns_) used.push_back(column.of.index);
+    unread_ = other_columns(header, used);
   }
 
-  std::optional<std::size_t> optional_column(const TableHeader& header,
-                                             std::span<const std::string_view> names,
-                                             std::string& unit) const {
-    std::optional<std::size_t> found;
-    for (std::size_t i = 0; i < header.names.size(); ++i) {
-      if (std::ranges::find(names, header.names[i]) == names.end()) continue;
-      if (found) refuse_here("the header names two columns of a " + std::string(names[0]));
-      found = i;
-      unit = header.units[i];
-    }
-    return found;
-  }
-
-  std::string objection_to(const TableHeader& header, std::string_view line) const {
-    if (line.starts_with('<')) {
+  std::string objection_to(const TableHeader& header) const {
+    if (table_.line().starts_with('<')) {
       return ": is XML, which is not read as a line; clearway trajectory alignment reads LandXML, "
              "and a GIS writes CSV or GeoJSON";
     }
@@ -161,75 +110,32 @@ class LineTable {
            "and cant, for example x,y,z";
   }
 
-  void add(std::string_view line) {
-    if (!columns_) {
-      refuse_here(excerpt(line) +
-                  ": expected a header before the first numbers, which names the columns, for "
-                  "example x,y,z");
+  void add() {
+    if (columns_.empty()) {
+      table_.refuse_here(excerpt(table_.line()) +
+                         ": expected a header before the first numbers, which names the columns, "
+                         "for example x,y,z");
     }
-    if (out_.size() == kMostLineVertices) {
-      refuse_here("has more vertices than " + format_count(kMostLineVertices));
-    }
-    split_quoted_fields(line, columns_->separator, fields_);
-    line_ = line;
-    if (fields_.size() != columns_->fields) {
-      refuse_decimal_commas();
-      refuse_here(std::to_string(fields_.size()) + " columns; expected " +
-                  std::to_string(columns_->fields) + " as in the header");
-    }
-    out_.x.push_back(coordinate(columns_->plan.x));
-    out_.y.push_back(coordinate(columns_->plan.y));
-    if (columns_->plan.z) out_.z.push_back(coordinate(*columns_->plan.z));
-    if (columns_->station) {
-      out_.station.push_back(station_metres_(number_in(*columns_->station, "station")));
-    }
-    if (columns_->cant) out_.cant.push_back(cant_metres_(number_in(*columns_->cant, "cant")));
-    out_.place.push_back(input_.line());
-  }
-
-  void refuse_decimal_commas() const {
-    const std::string commas = decimal_commas_in(line_);
-    if (!commas.empty()) refuse_here(excerpt(line_) + commas + ", as in 0.25");
-  }
-
-  double coordinate(std::size_t column) const {
-    const double metres = metres_(number_in(column, "coordinate"));
-    if (!(std::abs(metres) <= kFarthest)) {
-      refuse_here("a coordinate of " + format_digits(metres, 9) + " m; expected one within 1e9 m");
-    }
-    return metres;
-  }
-
-  double number_in(std::size_t column, const char* what) const {
-    const std::string_view field = fields_[column];
-    const auto number = parse_whole_number(field);
-    if (!number || !std::isfinite(*number)) {
-      refuse_decimal_commas();
-      refuse_here(excerpt(field) + " in column " + std::to_string(column + 1) +
-                  "; expected a finite number as " + what);
-    }
-    return *number;
+    table_.take_row(kMostLineVertices, "vertices");
+    for (const auto& [of, list] : columns_) (out_.*list).push_back(table_.number(of));
+    out_.place.push_back(table_.input().line());
   }
 
   void check_cant() const {
-    if (out_.cant.empty() || !columns_->cant_unit.empty()) return;
-    for (std::size_t i = 0; i < out_.size(); ++i) {
+    for (std::size_t i = 0; i < out_.cant.size(); ++i) {
       if (std::abs(out_.cant[i]) <= kMostCant) continue;
-      refuse_line(name_, out_.place[i],
+      refuse_line(table_.name(), out_.place[i],
                   "a cant of " + format_digits(out_.cant[i], 9) +
                       " m, if it is in the unit of the coordinates; expected its unit in the "
                       "header, as in cant [mm]");
     }
   }
 
-  InputBuffer input_;
-  std::string name_;
+  TextTable table_;
   const LineOptions& options_;
-  std::optional<LineColumns> columns_;
-  bool started_ = false;  ///< whether a line that is not a comment was read
-  UnitFactor metres_{1}, station_metres_{1}, cant_metres_{1};
-  std::string_view line_;                 ///< the line that is read
-  std::vector<std::string_view> fields_;  ///< its fields
+  std::vector<Column> columns_;  ///< none before the header
+  bool cant_has_unit_ = false;
+  std::vector<std::string> unread_;  ///< names of the other columns
   LineVertices out_;
 };
 
@@ -341,17 +247,9 @@ class GeoJsonLine {
         refuse_position("has " + std::to_string(size) + " numbers; expected " +
                         std::to_string(dimension) + " as at the first vertex");
       }
-      std::array<double, 3> numbers{};
       for (std::size_t k = 0; k < size; ++k) {
-        numbers[k] = metres(position[k].template get<double>());
-        if (!(std::abs(numbers[k]) <= kFarthest)) {
-          refuse_position("a coordinate of " + format_digits(numbers[k], 9) +
-                          " m; expected one within 1e9 m");
-        }
+        (out_.*kCoordinates[k]).push_back(metres(position[k].template get<double>()));
       }
-      out_.x.push_back(numbers[0]);
-      out_.y.push_back(numbers[1]);
-      if (dimension == 3) out_.z.push_back(numbers[2]);
       out_.place.push_back(i);
     }
   }
@@ -378,6 +276,16 @@ bool holds_json(InputBuffer& input) {
   const bool found = first != bytes.end() && *first == std::byte{'{'};
   input.return_to(start);
   return found;
+}
+
+void check_coordinates(const std::string& name, const LineVertices& line) {
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    for (const auto list : kCoordinates) {
+      if ((line.*list).empty() || std::abs((line.*list)[i]) <= kFarthest) continue;
+      refuse(name, line.place_of(i) + ": a coordinate of " + format_digits((line.*list)[i], 9) +
+                       " m; expected one within 1e9 m");
+    }
+  }
 }
 
 /// Leaves out vertices that stand twice in a row.
@@ -418,9 +326,7 @@ std::string LineVertices::place_of(std::size_t vertex) const {
 
 LineVertices read_line_vertices(const std::filesystem::path& path, const LineOptions& options,
                                 Remarks& out) {
-  File file = File::open_for_reading(path);
-  const auto access = file.is_regular() ? InputBuffer::Access::kSeek : InputBuffer::Access::kStream;
-  InputBuffer input(std::move(file), access);
+  InputBuffer input = InputBuffer::open(path);
   const bool json = holds_json(input);
   if (json && *input.size() > kMostGeoJsonBytes) {
     refuse(path.string(), "has " + format_count(*input.size()) + " bytes; expected at most " +
@@ -428,6 +334,7 @@ LineVertices read_line_vertices(const std::filesystem::path& path, const LineOpt
   }
   LineVertices line =
       json ? GeoJsonLine(path, options).read(out) : LineTable(std::move(input), options).read(out);
+  check_coordinates(path.string(), line);
   drop_repeated(path.string(), line);
   if (line.size() < 2) {
     refuse(path.string(),

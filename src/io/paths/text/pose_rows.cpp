@@ -16,6 +16,7 @@
 #include "io/paths/text/trajectory_columns.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/text/point_blocks.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
@@ -74,28 +75,12 @@ double seconds_of(double time) {
                                          : 1);
 }
 
-/// The field without the blanks and quotes around it.
-std::string_view bare_text(std::string_view field) {
-  constexpr std::string_view kAround = " \t\"'";
-  const std::size_t first = field.find_first_not_of(kAround);
-  if (first == std::string_view::npos) return {};
-  return field.substr(first, field.find_last_not_of(kAround) + 1 - first);
-}
-
-/// The name in a field, without quotes around it; within quotes, two stand for one (RFC 4180).
+/// The name in a field, without blanks and quotes around it.
 std::string name_of_pose(std::string_view field) {
-  const std::size_t open = field.find('"'), close = field.rfind('"');
-  const bool quoted = open != close && bare_text(field.substr(0, open)).empty() &&
-                      bare_text(field.substr(close)).empty();
-  if (!quoted) return std::string(bare_text(field));
-  const std::string_view inner = field.substr(open + 1, close - open - 1);
-  if (inner.find("\"\"") == std::string_view::npos) return std::string(bare_text(field));
-  std::string name;
-  for (std::size_t i = 0; i < inner.size(); ++i) {
-    name += inner[i];
-    if (inner.substr(i).starts_with("\"\"")) ++i;
-  }
-  return name;
+  constexpr std::string_view kAround = " \t\"'";
+  if (field.find("\"\"") != std::string_view::npos) return unquoted(field);
+  const std::size_t first = std::min(field.find_first_not_of(kAround), field.size());
+  return std::string(field.substr(first, field.find_last_not_of(kAround) + 1 - first));
 }
 
 }  // namespace
@@ -257,8 +242,7 @@ Objection PoseRows::add_quaternion(std::string_view line) {
 Objection PoseRows::add_columns(std::string_view line) {
   split_quoted_fields(line, columns_->separator, fields_);
   if (fields_.size() != columns_->fields) {
-    return {std::to_string(fields_.size()) + " columns; expected " +
-            std::to_string(columns_->fields) + " as before"};
+    return {objection_to_fields(line, fields_.size(), columns_->fields)};
   }
   std::array<double, 3> position{};
   Objection objection = numbers_in(columns_->position, position);
@@ -324,14 +308,7 @@ void PoseRows::add_label(const PoseLabel<std::string>& label, std::string_view f
 Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto value = parse_whole_number(fields_[columns[k]]);
-    if (!value) {
-      if (fields_[columns[k]].find(',') != std::string_view::npos) {
-        return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
-                " has a decimal comma, which is not read; write a decimal point, as in 0.25"};
-      }
-      return {excerpt(fields_[columns[k]]) + " in column " + std::to_string(columns[k] + 1) +
-              "; expected a number"};
-    }
+    if (!value) return {objection_to_number(fields_[columns[k]], columns[k], "a number")};
     out[k] = *value;
   }
   return {};

@@ -19,63 +19,50 @@
 #include "io/paths/text/pose_rows.hpp"
 #include "io/paths/unread_columns.hpp"
 #include "io/scans/text/point_blocks.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
 
-bool starts_with_number(std::string_view line) {
-  const char* at = line.data();
-  double value = 0;
-  return parse_number(at, at + line.size(), value);
-}
-
 class TextTrajectory {
  public:
   TextTrajectory(InputBuffer input, const TrajectoryOptions& options)
-      : input_(std::move(input)), options_(options), format_(options.format) {}
+      : table_(std::move(input)), options_(options), format_(options.format) {}
 
   void read(TrajectoryFile& out) {
-    input_.begin_text();
-    std::string_view line;
-    while (input_.next_line(line)) {
-      line = without_leading_blanks(line);
-      if (line.empty()) continue;
-      if (is_text_comment(line)) {
-        if (line.starts_with(kMadeByComment)) {
-          made_by_ = line.substr(kMadeByComment.size());
-        } else if (line.starts_with(kDoubtComment)) {
-          note_doubt(line.substr(kDoubtComment.size()), out);
-        } else if (!rows_ && reads_names()) {
-          note_header(line);
-        }
-      } else if (!rows_ && !started_ && is_header(line)) {
+    while (table_.next()) {
+      if (table_.is_comment()) {
+        note_comment(table_.line(), out);
+      } else if (!rows_ && !started_ && is_header()) {
         started_ = true;
       } else {
         const bool first = !rows_;
-        if (first) start(line);
-        const Objection objection = rows_->add(line);
+        if (first) start(table_.line());
+        const Objection objection = rows_->add(table_.line());
         if (!objection.text.empty()) fail(objection);
-        ends_in_number_ = !input_.line_terminated() && line.ends_with('.');
-        if (first && input_.can_seek() && read_blocks()) break;
+        if (first && table_.input().can_seek() && read_blocks()) break;
       }
     }
     out.format = format_;
     if (rows_) rows_->finish(out);
     out.labels.made_by = std::move(made_by_);
-    remark_unread_columns(input_.name(), unread_, PathTable::kPoses, out);
-    if (ends_in_number_) {
-      out.warn("cut-text",
-               input_.name() +
-                   ": the file ends without a line break within a number, so it may be "
-                   "cut",
-               {{"line", static_cast<double>(input_.line())}});
-    }
+    remark_unread_columns(table_.name(), unread_, PathTable::kPoses, out);
+    if (rows_) table_.remark_cut(out.remarks);
   }
 
  private:
   [[noreturn]] void fail(const Objection& objection) const {
-    refuse_line(input_.name(), input_.line(), objection.text, objection.remedy);
+    table_.refuse_here(objection.text, objection.remedy);
+  }
+
+  void note_comment(std::string_view line, TrajectoryFile& out) {
+    if (line.starts_with(kMadeByComment)) {
+      made_by_ = line.substr(kMadeByComment.size());
+    } else if (line.starts_with(kDoubtComment)) {
+      note_doubt(line.substr(kDoubtComment.size()), out);
+    } else if (!rows_ && reads_names()) {
+      if (auto columns = pose_columns(table_.take_header())) columns_ = std::move(columns);
+    }
   }
 
   /// Takes a warning about what the path was made of, as "CODE: TEXT", one of each code.
@@ -91,7 +78,7 @@ class TextTrajectory {
   /// Reads all lines after the first pose in parallel. Returns false, with nothing read, where one
   /// is refused or may be cut; reading them one after the other then finds its number.
   bool read_blocks() {
-    const LineBlocks blocks(input_);
+    const LineBlocks blocks(table_.input());
     if (blocks.count() < 2) return false;
     std::vector<PoseRows> parts(blocks.count(), rows_->for_lines(0));
     std::atomic<bool> good = true;
@@ -122,16 +109,13 @@ class TextTrajectory {
     return format_ == TrajectoryFormat::kAuto || format_ == TrajectoryFormat::kCsv;
   }
 
-  void note_header(std::string_view line) {
-    if (auto columns = pose_columns(parse_table_header(line))) columns_ = std::move(columns);
-  }
-
   /// Whether the first line that is not a comment names columns. Throws where these make no pose.
-  bool is_header(std::string_view line) {
-    if (starts_with_number(line)) return false;
+  bool is_header() {
+    if (table_.starts_with_number()) return false;
     if (format_ == TrajectoryFormat::kEuroc) return true;
     if (!reads_names()) return false;
-    const TableHeader names = parse_table_header(line);
+    const std::string_view line = table_.line();
+    const TableHeader& names = table_.take_header();
     columns_ = pose_columns(names);
     if (!columns_ && line.starts_with('<')) {
       fail({excerpt(line) +
@@ -171,7 +155,7 @@ class TextTrajectory {
       }
     }
     if (columns_) unread_ = columns_->unread;
-    rows_.emplace(format_, std::move(columns_), options_, input_.name());
+    rows_.emplace(format_, std::move(columns_), options_, table_.name());
   }
 
   /// Guesses the format by the number of numbers, where there is no header.
@@ -198,15 +182,14 @@ class TextTrajectory {
     format_ = TrajectoryFormat::kTum;
   }
 
-  InputBuffer input_;
+  TextTable table_;
   TrajectoryOptions options_;
   TrajectoryFormat format_;             ///< kAuto before the first line of numbers
   std::optional<PoseColumns> columns_;  ///< columns that a header or a comment has named
   std::string made_by_;                 ///< see PoseLabels
   std::vector<std::string> unread_;     ///< names of the columns that are not read
   bool started_ = false;                ///< whether a header has been read
-  bool ends_in_number_ = false;   ///< whether the file ends in a number, as one that was cut may
-  std::optional<PoseRows> rows_;  ///< exists from the first line of numbers on
+  std::optional<PoseRows> rows_;        ///< exists from the first line of numbers on
 };
 
 }  // namespace

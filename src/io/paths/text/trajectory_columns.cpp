@@ -133,15 +133,13 @@ std::optional<PoseColumns> pose_columns(const TableHeader& header) {
     const bool is_shared = column.at && std::ranges::count(found, column.at, &LabelColumn::at) > 1;
     if (label.is_text() && is_shared && !column.unit.empty()) column.at.reset();
   });
-  // `trajectory follow` writes the column path_pose for people.
-  constexpr std::string_view kForPeople = "path_pose";
-  for (std::size_t i = 0; i < header.names.size(); ++i) {
-    if (header.written[i] == kForPeople) continue;
-    const bool read = std::ranges::find(columns.position, i) != columns.position.end() ||
-                      std::ranges::find(columns.rotation, i) != columns.rotation.end() ||
-                      std::ranges::count(found, i, &LabelColumn::at) > 0;
-    if (!read && !header.written[i].empty()) columns.unread.push_back(header.written[i]);
+  std::vector<std::size_t> used = columns.rotation;
+  used.insert(used.end(), columns.position.begin(), columns.position.end());
+  for (const LabelColumn& column : found) {
+    if (column.at) used.push_back(*column.at);
   }
+  columns.unread = other_columns(header, used);
+  std::erase(columns.unread, "path_pose");  // which `trajectory follow` writes for people
   return columns;
 }
 

@@ -10,7 +10,7 @@
 #include "core/describe/labels.hpp"
 #include "io/paths/pose_input.hpp"
 #include "io/paths/trajectory_file.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 

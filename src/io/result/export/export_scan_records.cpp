@@ -56,7 +56,7 @@ std::vector<std::byte> described(std::span<const std::byte> found, std::size_t b
 }
 
 bool starts_as_las(const std::filesystem::path& path) {
-  InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
+  InputBuffer input = InputBuffer::open_regular(path);
   const auto start = input.peek(4);
   return start.size() == 4 && std::memcmp(start.data(), "LASF", 4) == 0;
 }

@@ -9,7 +9,7 @@
 
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {

@@ -12,7 +12,7 @@
 #include "clearway/vec3.hpp"
 #include "io/files/text_lines.hpp"
 #include "io/scans/input_buffer.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,75 +13,54 @@
 #include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
 
-/// Recognises from the first lines of a text file without column names that it holds something
-/// other than points (docs/design/conversion.md, "Text that is no table of points"). A resemblance
-/// must hold on every line examined, so that points pass.
-class LookAlike {
- public:
-  static constexpr std::size_t kMostLines = 100;
+constexpr std::string_view kDigits = "0123456789";
 
-  /// Takes the next line of data, which has no leading blanks.
-  void add(std::string_view line);
+/// The numbers with which a line of data starts.
+struct Row {
+  static constexpr std::size_t kMostNumbers = 20, kMostWritten = 5;
 
-  /// What a text holds that is no table of points.
-  struct Verdict {
-    std::string what;  ///< for a message; empty for points
-    /// The column in which x is likely to be, counted from 1.
-    std::size_t first_column = 2;
-  };
-  Verdict verdict() const;
+  /// line: without leading blanks.
+  explicit Row(std::string_view line);
 
- private:
-  static constexpr std::size_t kMostNumbers = 20;
-  static constexpr std::size_t kMostForms = 5;  ///< numbers of a line whose form is noted
-
-  struct Row {
-    std::array<double, kMostNumbers> numbers{};
-    std::size_t count = 0;  ///< how many numbers the line starts with
-    bool whole = false;     ///< whether the line consists of these numbers alone
-    /// Whether each of the first numbers is written as a whole number such as 0, 1 or 2.
-    std::array<bool, kMostForms> counting{};
-    /// Digits of each of the first numbers after its decimal point.
-    std::array<std::size_t, kMostForms> decimals{};
-  };
-
-  std::size_t fewest_numbers() const;
-  std::size_t most_decimals(std::size_t column) const;
-  /// How many numbers every line has; 0 where lines differ or hold anything else.
-  std::size_t same_numbers() const;
-  template <typename Holds>
-  bool all_rows(Holds holds) const;
-  bool ascending() const;
-  bool matrices(std::size_t first) const;
-  bool times_and_quaternions() const;
-  bool positions_and_quaternions() const;
-  bool index_first() const;
-  bool time_first() const;
-  bool evenly_spaced(std::size_t column) const;
-  bool normals_fourth() const;
-  bool varies(std::size_t column) const;
-  bool all_counting(std::size_t column) const;
-  bool grid_first(std::size_t slow, std::size_t fast) const;
-
-  std::vector<Row> rows_;
+  std::array<double, kMostNumbers> numbers{};
+  std::size_t count = 0;                            ///< how many numbers the line starts with
+  bool whole = false;                               ///< whether nothing follows them
+  std::array<std::string, kMostWritten> written{};  ///< the first numbers, without quotes
 };
+
+using Rows = std::vector<Row>;
+
+Row::Row(std::string_view line) {
+  const char* at = line.data();
+  const char* const end = at + line.size();
+  while (count < kMostNumbers) {
+    const char* const start = at;
+    if (!parse_number(at, end, numbers[count])) break;
+    const bool quoted = *start == '"';
+    if (count < kMostWritten) written[count] = std::string(start + quoted, at - quoted);
+    ++count;
+    if (at == end || skip_separator(at, end) == 0) break;
+  }
+  whole = at == end;
+}
 
 // Deviation of a norm from 1, as for the poses of a trajectory.
 constexpr double kUnitTolerance = 0.01;
-constexpr double kFarthestMetres = 1e8;    // greater than any coordinate on Earth
-constexpr double kHighestMetres = 2e4;     // greater than any height on Earth
-constexpr std::size_t kFewestIndices = 3;  // lines
-constexpr std::size_t kFewestTimes = 10;   // lines
+constexpr double kFarthestMetres = 1e8;  // greater than any coordinate on Earth
+constexpr double kHighestMetres = 2e4;   // greater than any height on Earth
 
-bool is_unit(std::span<const double> numbers) {
-  double square = 0;
-  for (const double n : numbers) square += n * n;
-  return std::abs(std::sqrt(square) - 1) <= kUnitTolerance;
+/// Whether some numbers of every line have the norm 1, as a quaternion or a normal has.
+bool are_units(const Rows& rows, std::size_t first, std::size_t count) {
+  return std::ranges::all_of(rows, [=](const Row& row) {
+    double square = 0;
+    for (std::size_t k = first; k < first + count; ++k) square += row.numbers[k] * row.numbers[k];
+    return std::abs(std::sqrt(square) - 1) <= kUnitTolerance;
+  });
 }
 
 /// Whether the numbers, in three rows of four or more, begin each row with a row of a rotation.
@@ -98,192 +76,153 @@ bool is_rotation(std::span<const double> numbers) {
   return true;
 }
 
-/// Whether a number is written with digits alone, without point, sign and exponent.
-bool is_counting(const char* begin, const char* end) {
-  return begin != end && std::all_of(begin, end, [](char c) { return c >= '0' && c <= '9'; });
+std::size_t fewest_numbers(const Rows& rows) {
+  return std::ranges::min(rows, {}, &Row::count).count;
 }
 
-/// The digits of a number after its decimal point.
-std::size_t decimals_of(const char* begin, const char* end) {
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
-  const char* const point = std::find(begin, end, '.');
-  if (point == end) return 0;
-  return static_cast<std::size_t>(std::find_if_not(point + 1, end, is_digit) - (point + 1));
-}
-
-void LookAlike::add(std::string_view line) {
-  Row row;
-  const char* at = line.data();
-  const char* const end = at + line.size();
-  while (row.count < kMostNumbers) {
-    const char* const start = at;
-    if (!parse_number(at, end, row.numbers[row.count])) break;
-    if (row.count < kMostForms) {
-      const bool quoted = *start == '"';
-      row.counting[row.count] = is_counting(start + quoted, at - quoted);
-      row.decimals[row.count] = decimals_of(start, at);
-    }
-    ++row.count;
-    if (at == end || skip_separator(at, end) == 0) break;
-  }
-  row.whole = at == end;
-  rows_.push_back(row);
-}
-
-std::size_t LookAlike::fewest_numbers() const {
-  std::size_t fewest = kMostNumbers;
-  for (const Row& row : rows_) fewest = std::min(fewest, row.count);
-  return rows_.empty() ? 0 : fewest;
-}
-
-std::size_t LookAlike::same_numbers() const {
-  const auto like_first = [this](const Row& row) {
-    return row.whole && row.count == rows_[0].count;
-  };
-  return !rows_.empty() && all_rows(like_first) ? rows_[0].count : 0;
-}
-
-template <typename Holds>
-bool LookAlike::all_rows(Holds holds) const {
-  return std::all_of(rows_.begin(), rows_.end(), holds);
-}
-
-bool LookAlike::ascending() const {
-  return std::adjacent_find(rows_.begin(), rows_.end(), [](const Row& a, const Row& b) {
-           return !(a.numbers[0] < b.numbers[0]);
-         }) == rows_.end();
-}
-
-bool LookAlike::matrices(std::size_t first) const {
-  return all_rows(
-      [=](const Row& row) { return is_rotation(std::span(row.numbers).subspan(first)); });
-}
-
-bool LookAlike::times_and_quaternions() const {
-  return rows_.size() > 1 && ascending() &&
-         all_rows([](const Row& row) { return is_unit(std::span(row.numbers).subspan(4, 4)); });
-}
-
-/// Whether the rows are positions and quaternions. Two layouts of scans that look alike are
-/// excluded: a normal with a curvature of 0, and an intensity of 0 with a normal.
-bool LookAlike::positions_and_quaternions() const {
-  const auto unit = [this](std::size_t first, std::size_t count) {
-    return all_rows(
-        [=](const Row& row) { return is_unit(std::span(row.numbers).subspan(first, count)); });
-  };
-  return unit(3, 4) && !unit(3, 3) && !unit(4, 3);
-}
-
-/// Whether the first column is an index. A regular grid of points is excluded, whose second column
-/// stays the same or counts too.
-bool LookAlike::index_first() const {
-  if (rows_.size() < kFewestIndices || fewest_numbers() < 4) return false;
-  const auto counts = [this](std::size_t column, double step) {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const double expected = rows_[0].numbers[column] + step * static_cast<double>(i);
-      if (!rows_[i].counting[column] || rows_[i].numbers[column] != expected) return false;
-    }
-    return true;
-  };
-  return counts(0, 1) && !counts(1, 0) && !counts(1, 1);
-}
-
-std::size_t LookAlike::most_decimals(std::size_t column) const {
+std::size_t most_decimals(const Rows& rows, std::size_t column) {
   std::size_t most = 0;
-  for (const Row& row : rows_) most = std::max(most, row.decimals[column]);
+  for (const Row& row : rows) {
+    const std::string& text = row.written[column];
+    const std::size_t point = text.find('.');
+    if (point == std::string::npos) continue;
+    const std::size_t end = std::min(text.find_first_not_of(kDigits, point + 1), text.size());
+    most = std::max(most, end - (point + 1));
+  }
   return most;
 }
 
+bool varies(const Rows& rows, std::size_t column) {
+  return std::ranges::any_of(
+      rows, [&](const Row& row) { return row.numbers[column] != rows[0].numbers[column]; });
+}
+
+/// Whether all numbers of a column are written with digits alone.
+bool all_counting(const Rows& rows, std::size_t column) {
+  return std::ranges::all_of(rows, [=](const Row& row) {
+    const std::string& text = row.written[column];
+    return !text.empty() && text.find_first_not_of(kDigits) == std::string::npos;
+  });
+}
+
+/// Whether the absolute values of a column are below a limit.
+bool within(const Rows& rows, std::size_t column, double limit) {
+  return std::ranges::all_of(rows,
+                             [=](const Row& row) { return std::abs(row.numbers[column]) < limit; });
+}
+
+/// Whether the fourth to sixth column are a normal, as behind the coordinates of points.
+bool normals_fourth(const Rows& rows) { return fewest_numbers(rows) >= 6 && are_units(rows, 3, 3); }
+
 /// Whether the numbers of a column ascend or descend by equal steps, as far as their digits say.
-bool LookAlike::evenly_spaced(std::size_t column) const {
-  const double first = rows_[0].numbers[column], last = rows_.back().numbers[column];
-  const double step = (last - first) / static_cast<double>(rows_.size() - 1);
-  const double digit = std::pow(10.0, -static_cast<double>(most_decimals(column)));
+bool evenly_spaced(const Rows& rows, std::size_t column) {
+  const double first = rows[0].numbers[column], last = rows.back().numbers[column];
+  const double step = (last - first) / static_cast<double>(rows.size() - 1);
+  const double digit = std::pow(10.0, -static_cast<double>(most_decimals(rows, column)));
   if (!(std::abs(step) > 0)) return false;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
+  for (std::size_t i = 0; i < rows.size(); ++i) {
     const double even = first + step * static_cast<double>(i);
-    if (!(std::abs(rows_[i].numbers[column] - even) <= 1.01 * digit)) return false;
+    if (!(std::abs(rows[i].numbers[column] - even) <= 1.01 * digit)) return false;
   }
   return true;
 }
 
-bool LookAlike::varies(std::size_t column) const {
-  return !all_rows([&](const Row& row) { return row.numbers[column] == rows_[0].numbers[column]; });
+/// A number may precede or follow each matrix: its index, or its quality.
+bool holds_matrices(const Rows& rows) {
+  for (std::size_t first = 0; first <= rows[0].count % 4; ++first) {
+    const auto is_matrix = [=](const Row& row) {
+      return is_rotation(std::span(row.numbers).subspan(first));
+    };
+    if (std::ranges::all_of(rows, is_matrix)) return true;
+  }
+  return false;
 }
 
-bool LookAlike::all_counting(std::size_t column) const {
-  return all_rows([=](const Row& row) { return row.counting[column]; });
+bool holds_times_and_quaternions(const Rows& rows) {
+  const auto stays = [](const Row& a, const Row& b) { return !(a.numbers[0] < b.numbers[0]); };
+  return are_units(rows, 4, 4) && std::ranges::adjacent_find(rows, stays) == rows.end();
 }
 
-/// Whether the fourth to sixth column are a normal, as behind the coordinates of points.
-bool LookAlike::normals_fourth() const {
-  return fewest_numbers() >= 6 &&
-         all_rows([](const Row& row) { return is_unit(std::span(row.numbers).subspan(3, 3)); });
+/// Two layouts of scans that look alike are excluded: a normal with a curvature of 0, and an
+/// intensity of 0 with a normal.
+bool holds_quaternions(const Rows& rows) {
+  return are_units(rows, 3, 4) && !are_units(rows, 3, 3) && !are_units(rows, 4, 3);
+}
+
+/// A regular grid of points is excluded, whose second column stays the same or counts too.
+bool has_index_first(const Rows& rows) {
+  const auto counts = [&](std::size_t column, double step) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const double expected = rows[0].numbers[column] + step * static_cast<double>(i);
+      if (rows[i].numbers[column] != expected) return false;
+    }
+    return all_counting(rows, column);
+  };
+  return counts(0, 1) && !counts(1, 0) && !counts(1, 1);
 }
 
 /// Whether the first column is a time and the next three are coordinates. Points may be sorted by
 /// x, so other signs are needed: docs/design/conversion.md, "Signs of a time".
-bool LookAlike::time_first() const {
-  if (rows_.size() < kFewestTimes || fewest_numbers() < 4 || !varies(0)) return false;
-  const bool never_back =
-      std::is_sorted(rows_.begin(), rows_.end(),
-                     [](const Row& a, const Row& b) { return a.numbers[0] < b.numbers[0]; });
-  const auto within = [this](std::size_t column, double limit) {
-    return all_rows([=](const Row& row) { return std::abs(row.numbers[column]) < limit; });
-  };
-  if (!never_back || !within(1, kFarthestMetres) || !within(2, kFarthestMetres) ||
-      !within(3, kFarthestMetres)) {
-    return false;
+bool has_time_first(const Rows& rows) {
+  const auto goes_back = [](const Row& a, const Row& b) { return b.numbers[0] < a.numbers[0]; };
+  if (!varies(rows, 0) || std::ranges::adjacent_find(rows, goes_back) != rows.end()) return false;
+  for (const std::size_t column : {1, 2, 3}) {
+    if (!within(rows, column, kFarthestMetres)) return false;
   }
-  if (all_rows([](const Row& row) { return row.numbers[0] > kFarthestMetres; })) return true;
-  const auto [fewest, most] = std::minmax({most_decimals(1), most_decimals(2), most_decimals(3)});
-  if (fewest == 0 || normals_fourth() || !varies(1) || !varies(3)) return false;
-  if (most_decimals(0) > most || all_counting(0)) return true;
-  const bool no_height = within(3, kHighestMetres) && all_rows([](const Row& row) {
-                           return std::abs(row.numbers[2]) > kHighestMetres;
-                         });
-  return no_height || (fewest == most && evenly_spaced(0) && !evenly_spaced(1));
+  const auto is_far = [](const Row& row) { return row.numbers[0] > kFarthestMetres; };
+  if (std::ranges::all_of(rows, is_far)) return true;
+  const auto [fewest, most] =
+      std::minmax({most_decimals(rows, 1), most_decimals(rows, 2), most_decimals(rows, 3)});
+  if (fewest == 0 || normals_fourth(rows) || !varies(rows, 1) || !varies(rows, 3)) return false;
+  if (most_decimals(rows, 0) > most || all_counting(rows, 0)) return true;
+  const bool no_height =
+      within(rows, 3, kHighestMetres) && std::ranges::all_of(rows, [](const Row& row) {
+        return std::abs(row.numbers[2]) > kHighestMetres;
+      });
+  return no_height || (fewest == most && evenly_spaced(rows, 0) && !evenly_spaced(rows, 1));
 }
 
-/// Whether two columns are the row and the column of a grid, of which one runs through while the
-/// other stays, and the next three are coordinates. slow, fast: 0 and 1 in either order.
-bool LookAlike::grid_first(std::size_t slow, std::size_t fast) const {
-  if (rows_.size() < kFewestIndices || fewest_numbers() < 5) return false;
-  if (!all_counting(0) || !all_counting(1)) return false;
-  for (std::size_t column = 2; column < 5; ++column) {
-    if (most_decimals(column) == 0) return false;
+/// Whether the first two columns are the row and the column of a grid, of which one runs through
+/// while the other stays, and the next three are coordinates.
+bool has_grid_first(const Rows& rows) {
+  if (!all_counting(rows, 0) || !all_counting(rows, 1) || normals_fourth(rows)) return false;
+  for (const std::size_t column : {2, 3, 4}) {
+    if (most_decimals(rows, column) == 0) return false;
   }
-  const auto goes_on = [=](const Row& a, const Row& b) {
-    const double lines = b.numbers[slow] - a.numbers[slow];
-    const double places = b.numbers[fast] - a.numbers[fast];
-    return lines == 0 ? places > 0 : lines > 0 && places < 0;
+  const auto runs = [&](std::size_t slow, std::size_t fast) {
+    const auto stops = [=](const Row& a, const Row& b) {
+      const double lines = b.numbers[slow] - a.numbers[slow];
+      const double places = b.numbers[fast] - a.numbers[fast];
+      return !(lines == 0 ? places > 0 : lines > 0 && places < 0);
+    };
+    return std::ranges::adjacent_find(rows, stops) == rows.end();
   };
-  return !normals_fourth() &&
-         std::adjacent_find(rows_.begin(), rows_.end(), std::not_fn(goes_on)) == rows_.end();
+  return runs(0, 1) || runs(1, 0);
 }
 
-LookAlike::Verdict LookAlike::verdict() const {
-  const std::size_t n = same_numbers();
-  // A number may precede or follow each matrix: its index, or its quality.
-  for (const std::size_t numbers : {12u, 16u}) {
-    if ((n == numbers && matrices(0)) || (n == numbers + 1 && (matrices(0) || matrices(1)))) {
-      return {"a trajectory (" + std::to_string(n) + " numbers a line, a rigid " +
-              (numbers == 12 ? "3 x 4" : "4 x 4") + " matrix)"};
-    }
-  }
-  if (n >= 8 && times_and_quaternions()) {
-    return {"a trajectory (" + std::to_string(n) + " numbers a line: time, position, quaternion)"};
-  }
-  if (n == 7 && positions_and_quaternions()) {
-    return {"a trajectory (7 numbers a line: position, quaternion)", 1};
-  }
-  if (grid_first(0, 1) || grid_first(1, 0)) {
-    return {"a table whose first two columns are the row and the column of a grid", 3};
-  }
-  if (index_first()) return {"a table whose first column is the point's number"};
-  if (time_first()) return {"a table whose first column is a time"};
-  return {};
-}
+/// Something other than points that a text without column names may hold, recognised by its first
+/// lines (docs/design/conversion.md, "Text that is no table of points"). The resemblance must hold
+/// on every line examined, so that points pass.
+struct LookAlike {
+  std::size_t fewest_lines;
+  /// Numbers of every line. Where `most` is 0, anything may follow them; otherwise all lines have
+  /// the same number of numbers and nothing else.
+  std::size_t fewest, most;
+  bool (*test)(const Rows& rows);
+  const char* what;          ///< end of the message
+  std::size_t first_column;  ///< in which x is likely to be, counted from 1
+};
+
+constexpr std::size_t kExaminedLines = 100;
+constexpr LookAlike kLookAlikes[] = {
+    {1, 12, 13, holds_matrices, ", a rigid 3 x 4 matrix)", 2},
+    {1, 16, 17, holds_matrices, ", a rigid 4 x 4 matrix)", 2},
+    {2, 8, Row::kMostNumbers, holds_times_and_quaternions, ": time, position, quaternion)", 2},
+    {1, 7, 7, holds_quaternions, ": position, quaternion)", 1},
+    {3, 5, 0, has_grid_first, "two columns are the row and the column of a grid", 3},
+    {3, 4, 0, has_index_first, "column is the point's number", 2},
+    {10, 4, 0, has_time_first, "column is a time", 2},
+};
 
 constexpr std::size_t kMostCommentHeaders = 16;
 
@@ -348,22 +287,18 @@ class PrologueReader {
   /// Whether a first line is data, judged by the columns as far as they are known.
   bool is_point(std::string_view line) {
     Vec3 point{};
-    if (!options_.columns.empty()) {
-      const auto columns = chosen_columns(nullptr);
-      if (columns && PointLine(*columns, separator_of(line)).parse(line, point)) return true;
-    }
-    for (const auto& [header, number] : comments_) {
-      const auto columns = coordinate_columns(header);
-      if (columns && header.names.size() == count_fields(line) &&
-          PointLine(*columns, separator_of(line)).parse(line, point)) {
-        return true;
-      }
-    }
-    return PointLine().parse(line, point);
+    const auto holds = [&](const std::optional<CoordinateColumns>& columns) {
+      return columns && PointLine(*columns, separator_of(line)).parse(line, point);
+    };
+    if (!options_.columns.empty() && holds(chosen_columns({}))) return true;
+    const std::size_t fields = count_fields(line);
+    return PointLine().parse(line, point) || std::ranges::any_of(comments_, [&](const Comment& c) {
+             return c.header.names.size() == fields && holds(coordinate_columns(c.header));
+           });
   }
 
-  /// The columns that the caller chose; nullopt for names where `header` is null or lacks one.
-  std::optional<CoordinateColumns> chosen_columns(const TableHeader* header) const {
+  /// The columns that the caller chose; nullopt for names that `header` lacks.
+  std::optional<CoordinateColumns> chosen_columns(const TableHeader& header) const {
     CoordinateColumns columns{};
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const std::string& wanted = options_.columns[k];
@@ -372,7 +307,7 @@ class PrologueReader {
         columns[k] = *number - 1;
         continue;
       }
-      const auto found = header ? header->find(table_name(wanted)) : std::nullopt;
+      const auto found = header.find(table_name(wanted));
       if (!found) return std::nullopt;
       columns[k] = *found;
     }
@@ -389,7 +324,7 @@ class PrologueReader {
     TableHeader header = parse_table_header(line);
     std::optional<CoordinateColumns> columns;
     if (!options_.columns.empty()) {
-      columns = chosen_columns(&header);
+      columns = chosen_columns(header);
       if (columns && has_number(line, header.separator, *columns)) {
         fail(excerpt(line) + "; expected numbers in the columns " + wanted_columns(), false);
       }
@@ -455,17 +390,14 @@ class PrologueReader {
   }
 
   void use_chosen(char separator) {
-    auto columns = chosen_columns(nullptr);
-    const TableHeader* named_by = nullptr;
-    for (const auto& [header, number] : comments_) {
-      const auto by_names = chosen_columns(&header);
-      if (!by_names || header.names.size() != fields_) continue;
-      columns = by_names;
-      named_by = &header;
-      break;
-    }
+    TableHeader header;
+    const auto named_by = std::ranges::find_if(comments_, [&](const Comment& comment) {
+      return comment.header.names.size() == fields_ && chosen_columns(comment.header);
+    });
+    if (named_by != comments_.end()) header = named_by->header;
+    const auto columns = chosen_columns(header);
     if (!columns) fail("no header names each of the columns " + wanted_columns() + " once", false);
-    use(named_by ? *named_by : TableHeader{}, *columns, separator);
+    use(header, *columns, separator);
   }
 
   /// Whether the names fit the lines: there are as many, or fewer that start with x, y and z.
@@ -503,18 +435,26 @@ class PrologueReader {
   /// of data, which was already read.
   void refuse_look_alike(std::string_view line) {
     const std::uint64_t number = input_.line();
-    LookAlike look_alike;
-    look_alike.add(line);
-    for (std::size_t i = 1; i < LookAlike::kMostLines && next_data_line(input_, line); ++i) {
-      look_alike.add(line);
+    Rows rows;
+    do {
+      rows.emplace_back(line);
+    } while (rows.size() < kExaminedLines && next_data_line(input_, line));
+    const std::size_t numbers = fewest_numbers(rows);
+    const bool same = std::ranges::all_of(
+        rows, [=](const Row& row) { return row.whole && row.count == numbers; });
+    for (const LookAlike& like : kLookAlikes) {
+      const bool enough = rows.size() >= like.fewest_lines && numbers >= like.fewest;
+      const bool alone = like.most == 0 || (same && numbers <= like.most);
+      if (!enough || !alone || !like.test(rows)) continue;
+      const std::string what = like.most == 0
+                                   ? "a table whose first "
+                                   : "a trajectory (" + std::to_string(numbers) + " numbers a line";
+      refuse(input_.name(),
+             "line " + std::to_string(number) + ": looks like " + what + like.what +
+                 "; expected points, with x, y and z in the first three columns",
+             options_.may_choose ? Remedy::kColumns : Remedy::kNone,
+             static_cast<double>(like.first_column));
     }
-    const LookAlike::Verdict verdict = look_alike.verdict();
-    if (verdict.what.empty()) return;
-    refuse(input_.name(),
-           "line " + std::to_string(number) + ": looks like " + verdict.what +
-               "; expected points, with x, y and z in the first three columns",
-           options_.may_choose ? Remedy::kColumns : Remedy::kNone,
-           static_cast<double>(verdict.first_column));
   }
 
   InputBuffer& input_;

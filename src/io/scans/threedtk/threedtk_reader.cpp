@@ -67,7 +67,7 @@ Pose find_pose(const fs::path& scan, std::vector<Message>& remarks) {
                               scan.string() + ": has a .pose file only, while other scans of the "
                                               "folder have .frames. It may not be registered"));
   }
-  InputBuffer input(File::open_regular(*file), InputBuffer::Access::kSeek);
+  InputBuffer input = InputBuffer::open_regular(*file);
   return framed ? read_threedtk_frames(input) : read_threedtk_pose(input);
 }
 

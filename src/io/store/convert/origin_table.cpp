@@ -12,8 +12,7 @@
 #include "io/files/mapped_file.hpp"
 #include "io/files/text_number.hpp"
 #include "io/files/xxh64.hpp"
-#include "io/scans/input_buffer.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
@@ -295,16 +294,6 @@ void add_origins_of_inputs(const EnvironmentSource& environment, OriginTable& ta
 namespace clearway {
 namespace {
 
-constexpr const char* kHeader = "first,x,y,z";
-
-/// A field without the blanks and quotes around it.
-std::string_view trimmed(std::string_view field) {
-  const auto is_around = [](char c) { return is_blank(c) || c == '"'; };
-  while (!field.empty() && is_around(field.front())) field.remove_prefix(1);
-  while (!field.empty() && is_around(field.back())) field.remove_suffix(1);
-  return field;
-}
-
 /// A row of a file of origins.
 struct OriginRow {
   std::uint64_t line;
@@ -315,50 +304,38 @@ struct OriginRow {
 /// Calls `use` for each row of a file of origins, whose form is checked.
 template <typename Use>
 void for_each_origin(const std::filesystem::path& path, Use use) {
-  InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  input.begin_text();
-  std::vector<std::string_view> fields;
-  const auto fail = [&](const std::string& what) { refuse_line(input.name(), input.line(), what); };
-  std::string_view line;
-  if (!input.next_line(line)) {
-    refuse(input.name(), std::string("is empty; expected the line ") + kHeader + " first");
+  constexpr std::string_view kColumns[] = {"first", "x", "y", "z"};
+  TextTable table(InputBuffer::open_regular(path), ',');
+  if (!table.next()) refuse(table.name(), "is empty; expected the line first,x,y,z first");
+  if (!table.is_header(kColumns)) {
+    table.refuse_here(excerpt(table.line()) + "; expected the header first,x,y,z");
   }
-  split_fields(line, ',', fields);
-  std::string header;
-  for (const std::string_view field : fields) {
-    header += (header.empty() ? "" : ",") + std::string(trimmed(field));
-  }
-  if (header != kHeader) fail(excerpt(line) + "; expected the header " + kHeader);
+  std::array<TableColumn, 4> columns;
+  for (std::size_t i = 0; i < 4; ++i) columns[i] = *table.column(kColumns[i]);
   std::optional<std::uint64_t> before;
-  while (input.next_line(line)) {
-    if (trimmed(line).empty()) continue;
-    split_fields(line, ',', fields);
-    if (fields.size() != 4) fail(excerpt(line) + "; expected four numbers, " + kHeader);
-    OriginRow row{input.line(), 0, {}};
-    const auto first = parse_count(trimmed(fields[0]));
-    if (!first) fail(excerpt(fields[0]) + "; expected a source index, a whole number from 0");
-    row.first = *first;
-    for (int k = 0; k < 3; ++k) {
-      const auto number = parse_whole_number(fields[static_cast<std::size_t>(1 + k)]);
-      if (!number || !std::isfinite(*number)) {
-        fail(excerpt(fields[static_cast<std::size_t>(1 + k)]) + "; expected a finite coordinate");
-      }
-      row.origin[k] = *number;
+  while (table.next()) {
+    table.take_row(std::numeric_limits<std::size_t>::max(), "origins");
+    const auto first = parse_count(table.text(columns[0]));
+    if (!first) {
+      table.refuse_here(excerpt(table.text(columns[0])) +
+                        "; expected a source index, a whole number from 0");
     }
-    if (!before && row.first != 0) {
-      fail("starts at source index " + std::to_string(row.first) + "; expected 0");
+    const Vec3 origin{table.number(columns[1]), table.number(columns[2]), table.number(columns[3])};
+    if (!before && *first != 0) {
+      table.refuse_here("starts at source index " + std::to_string(*first) + "; expected 0");
     }
-    if (before && row.first <= *before) {
-      fail("source index " + std::to_string(row.first) + " after " + std::to_string(*before) +
-           "; expected ascending ones");
+    if (before && *first <= *before) {
+      table.refuse_here("source index " + std::to_string(*first) + " after " +
+                        std::to_string(*before) + "; expected ascending ones");
     }
-    if (!input.line_terminated()) {
-      fail("ends without a line break, so that its last number may be cut off; expected one");
+    if (!table.input().line_terminated()) {
+      table.refuse_here(
+          "ends without a line break, so that its last number may be cut off; expected one");
     }
-    before = row.first;
-    use(input.name(), row);
+    before = first;
+    use(table.name(), OriginRow{table.input().line(), *first, origin});
   }
-  if (!before) refuse(input.name(), "holds no origin; expected one at least");
+  if (!before) refuse(table.name(), "holds no origin; expected one at least");
 }
 
 }  // namespace

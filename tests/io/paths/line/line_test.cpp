@@ -122,7 +122,7 @@ TEST_CASE("tables that are no line are refused with their line") {
     0,0,1\n1,0,1\n                         | line 1 ... header
     a,b\n1,2\n                             | line 1 ... the columns x and y
     x,y,x\n1,2,3\n                         | the columns x and y once
-    x,y,station,chainage\n1,2,3,4\n        | two columns of a station
+    x,y,station,chainage\n1,2,3,4\n        | two columns for station
     lon,lat,z\n9,48,1\n                    | angles and no lengths ... transform
     <kml>\n</kml>\n                        | is XML
                                            | no vertex

@@ -112,8 +112,8 @@ TEST_CASE("a file of origins that is not one is refused with its line") {
   for (const char* row : {"0,0,0", "0,0,0,0,0", "-1,0,0,0", "0.5,0,0,0"}) {
     check(header + row + "\n", "line 2");
   }
-  check(header + "0,nan,0,0\n", "line 2: \"nan\"; expected a finite coordinate");
-  check(header + "0,0,0,inf\n", "line 2: \"inf\"; expected a finite coordinate");
+  check(header + "0,nan,0,0\n", "line 2: \"nan\" in column 2; expected a finite number as x");
+  check(header + "0,0,0,inf\n", "line 2: \"inf\" in column 4; expected a finite number as z");
   check(header + "1,0,0,0\n", "line 2: starts at source index 1; expected 0");
   check(header + "0,1,1,1\n9,0,0,0\n9,0,0,0\n", "line 4: source index 9 after 9");
   check(header + "0,1,1,1\n9,0,0,0\n8,0,0,0\n", "line 4: source index 8 after 9");

@@ -1,8 +1,13 @@
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
+
+#include "core/messages/messages.hpp"
+#include "io/files/text_number.hpp"
+#include "io/scans/text/point_blocks.hpp"
 
 namespace clearway {
 namespace {
@@ -165,10 +170,11 @@ std::string table_name(std::string_view field) {
   return name;
 }
 
-TableHeader parse_table_header(std::string_view line) {
+TableHeader parse_table_header(std::string_view line, char separator) {
   TableHeader header;
   line = without_mark_and_label(line);
-  header.separator = line.find(';') != std::string_view::npos   ? ';'
+  header.separator = separator != 0                             ? separator
+                     : line.find(';') != std::string_view::npos ? ';'
                      : line.find(',') != std::string_view::npos ? ','
                                                                 : ' ';
   std::vector<std::string_view> fields;
@@ -182,6 +188,44 @@ TableHeader parse_table_header(std::string_view line) {
     }
   }
   return header;
+}
+
+std::vector<std::string> other_columns(const TableHeader& header,
+                                       std::span<const std::size_t> used) {
+  std::vector<std::string> others;
+  for (std::size_t i = 0; i < header.written.size(); ++i) {
+    const bool is_used = std::ranges::find(used, i) != used.end();
+    if (!is_used && !header.written[i].empty()) others.push_back(header.written[i]);
+  }
+  return others;
+}
+
+std::string unquoted(std::string_view field) {
+  field = trimmed(field, " \t");
+  if (field.size() < 2 || !field.starts_with('"') || !field.ends_with('"')) {
+    return std::string(field);
+  }
+  std::string out;
+  for (std::size_t i = 1; i + 1 < field.size(); ++i) {
+    out += field[i];
+    if (field[i] == '"' && i + 2 < field.size() && field[i + 1] == '"') ++i;
+  }
+  return out;
+}
+
+std::string objection_to_fields(std::string_view line, std::size_t found, std::size_t expected) {
+  const std::string commas = decimal_commas_in(line);
+  if (!commas.empty()) return excerpt(line) + commas + ", as in 0.25";
+  if (std::ranges::count(line, '"') % 2 != 0) return excerpt(line) + ": a quote has no end";
+  return counted(found, "column") + "; expected " + std::to_string(expected) + " as before";
+}
+
+std::string objection_to_number(std::string_view field, std::size_t column,
+                                const std::string& expected) {
+  const bool has_comma = field.find(',') != std::string_view::npos;
+  return excerpt(field) + " in column " + std::to_string(column + 1) +
+         (has_comma ? " has a decimal comma, which is not read; write a decimal point, as in 0.25"
+                    : "; expected " + expected);
 }
 
 std::optional<PlanColumns> plan_columns(const TableHeader& header) {
@@ -241,6 +285,114 @@ TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns) {
   out.unit = found->environment;
   out.any_foot = found->any_foot;
   return out;
+}
+
+TextTable::TextTable(InputBuffer input, char separator)
+    : input_(std::move(input)), separator_(separator) {
+  input_.begin_text();
+}
+
+bool TextTable::next() {
+  do {
+    if (!input_.next_line(line_)) return false;
+    line_ = without_leading_blanks(line_);
+  } while (line_.empty());
+  is_cut_ = !input_.line_terminated() && !is_comment() && line_.ends_with('.');
+  return true;
+}
+
+bool TextTable::is_comment() const { return is_text_comment(line_); }
+
+bool TextTable::starts_with_number() const {
+  const char* at = line_.data();
+  double value = 0;
+  return parse_number(at, at + line_.size(), value);
+}
+
+void TextTable::remark_cut(std::vector<Message>& remarks) const {
+  if (!is_cut_) return;
+  remarks.push_back(warning(
+      "cut-text", name() + ": the file ends without a line break within a number, so it may be cut",
+      {{"line", static_cast<double>(input_.line())}}));
+}
+
+const TableHeader& TextTable::take_header() {
+  header_ = parse_table_header(line_, separator_);
+  return header_;
+}
+
+bool TextTable::is_header(ColumnNames names) {
+  take_header();
+  return std::ranges::equal(header_.written, names) &&
+         std::ranges::all_of(header_.units, &std::string::empty);
+}
+
+std::optional<TableColumn> TextTable::find(std::span<const std::string> columns,
+                                           ColumnNames names) const {
+  std::optional<TableColumn> found;
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (!is_one_of(columns[i], names)) continue;
+    if (found) refuse_here("the header names two columns for " + found->name + "; expected one");
+    found = {std::string(names[0]), i, !header_.units[i].empty()};
+  }
+  return found;
+}
+
+std::optional<TableColumn> TextTable::column(ColumnNames names, const ColumnUnit& unit) const {
+  auto found = find(header_.names, names);
+  if (!found) return found;
+  double metres = unit.unless_named;
+  if (found->has_unit) {
+    const std::string& text = header_.units[found->index];
+    const auto named = file_unit_of(text);
+    if (!named) {
+      refuse_here("the header has the " + found->name + " in " + excerpt(text) + "; expected " +
+                  file_unit_list());
+    }
+    metres = named->metres_in(unit.environment);
+  }
+  found->factor = UnitFactor(metres, unit.wanted);
+  return found;
+}
+
+std::optional<TableColumn> TextTable::column(std::string_view name) const {
+  auto found = find(header_.written, {&name, 1});
+  if (found && found->has_unit) {
+    refuse_here("the header has the " + found->name + " in " +
+                excerpt(header_.units[found->index]) + "; expected no unit");
+  }
+  return found;
+}
+
+TableColumn TextTable::needed(std::string_view name, const char* otherwise) const {
+  const auto found = column(name);
+  if (!found) refuse_here("has no column " + std::string(name) + otherwise);
+  return *found;
+}
+
+void TextTable::take_row(std::size_t most, const char* rows) {
+  if (rows_++ == most) refuse_here("has more " + std::string(rows) + " than " + format_count(most));
+  split_quoted_fields(line_, header_.separator, fields_);
+  if (fields_.size() != header_.names.size()) {
+    refuse_here(objection_to_fields(line_, fields_.size(), header_.names.size()));
+  }
+}
+
+std::string TextTable::text(const TableColumn& column) const {
+  const std::string_view field = trimmed(fields_[column.index], " \t");
+  if (field.starts_with('"') && (field.size() < 2 || !field.ends_with('"'))) {
+    refuse_here(excerpt(field) + ": a quote has no end");
+  }
+  return unquoted(field);
+}
+
+double TextTable::number(const TableColumn& column) const {
+  const std::string_view field = fields_[column.index];
+  const auto value = parse_whole_number(field);
+  if (!value || !std::isfinite(*value)) {
+    refuse_here(objection_to_number(field, column.index, "a finite number as " + column.name));
+  }
+  return column.factor(*value);
 }
 
 }  // namespace clearway
