@@ -119,8 +119,8 @@ Facts read_mesh_file(const std::filesystem::path& path) {
 
 /// Where the pose puts the origin and the ends of 3DTK's axes: right, up and forward.
 Facts read_pose(const std::filesystem::path& path, bool frames) {
-  InputBuffer input(File::open_regular(path), InputBuffer::Access::kSeek);
-  const Pose pose = frames ? read_threedtk_frames(input) : read_threedtk_pose(input);
+  TextTable table(InputBuffer::open_regular(path));
+  const Pose pose = frames ? read_threedtk_frames(table) : read_threedtk_pose(table);
   Facts facts;
   for (const Vec3& axis : {Vec3{}, Vec3{100, 0, 0}, Vec3{0, 100, 0}, Vec3{0, 0, 100}}) {
     add(facts.numbers["axes"], {transform(pose, from_threedtk(axis))});

@@ -10,6 +10,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 namespace {
@@ -40,16 +41,7 @@ std::string in_small_letters(std::string text) {
 }
 
 /// What a cell says: without its quotes, and without blanks around it.
-std::string said_by(const std::string& raw) {
-  std::string text = without_blanks(raw);
-  if (text.size() < 2 || text.front() != '"' || text.back() != '"') return text;
-  std::string out;
-  for (std::size_t i = 1; i + 1 < text.size(); ++i) {
-    out += text[i];
-    if (text[i] == '"' && i + 2 < text.size() && text[i + 1] == '"') ++i;
-  }
-  return without_blanks(out);
-}
+std::string said_by(const std::string& raw) { return without_blanks(unquoted(raw)); }
 
 /// The separator of a header: the one that it has most of.
 char separator_of(std::string_view header) {

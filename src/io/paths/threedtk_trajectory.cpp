@@ -53,9 +53,9 @@ void note_frame(const std::string& name, TrajectoryFile& out) {
 }
 
 void read_one(const std::filesystem::path& path, TrajectoryFormat format, TrajectoryFile& out) {
-  InputBuffer input = InputBuffer::open(path);
-  out.poses.push_back(format == TrajectoryFormat::kThreedtkFrames ? read_threedtk_frames(input)
-                                                                  : read_threedtk_pose(input));
+  TextTable table(InputBuffer::open(path));
+  out.poses.push_back(format == TrajectoryFormat::kThreedtkFrames ? read_threedtk_frames(table)
+                                                                  : read_threedtk_pose(table));
   out.labels.name.push_back(path.filename().string());
 }
 

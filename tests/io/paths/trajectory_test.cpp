@@ -149,7 +149,7 @@ TEST_CASE("malformed trajectories are refused with their line, and with what to 
     x,tx,y,z,qx,qy,qz,qw\n                            | line 1
     x,y,z,qx,qy,qz,qw\n1,2,3,0,0,0,1\n1,2,3,0,0,0,1,5\n | line 3 ... 8 columns; expected 7
     x,y,z,qx,qy,qz,qw\n1,2,,0,0,0,1\n                 | line 2 ... column 3
-    x[mm],y[m],z[mm],qx,qy,qz,qw\n7,8,9,0,0,0,1\n     | several units
+    x[mm],y[m],z[mm],qx,qy,qz,qw\n7,8,9,0,0,0,1\n     | positions in "mm" and in "m"
     x[px],y[px],z[px],qx,qy,qz,qw\n7,8,9,0,0,0,1\n    | px
     x_ft,y_ft,z,qx,qy,qz,qw\n10,20,30,0,0,0,1\n       | some of the positions
     PK)"

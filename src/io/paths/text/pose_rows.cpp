@@ -22,24 +22,14 @@ namespace clearway {
 namespace {
 
 FileUnit unit_in_header(std::span<const std::string> texts, const std::string& name) {
-  FileUnit declared;
-  for (const std::string& text : texts) {
-    if (text.empty()) continue;
-    const auto unit = file_unit_of(text);
-    if (!unit) {
-      refuse(name,
-             "the header has positions in " + excerpt(text) + "; expected " + file_unit_list());
-    }
-    if (declared.is_known() && declared != *unit) {
-      refuse(name, "the header has positions in several units; expected one");
-    }
-    declared = *unit;
-  }
+  const auto declared =
+      common_unit<FileUnit>(texts, "positions", file_unit_list(), file_unit_of, name);
+  if (!declared) return {};
   const bool all = std::ranges::none_of(texts, &std::string::empty);
-  if (declared.is_known() && declared.metres() != 1 && !all) {
+  if (declared->metres() != 1 && !all) {
     refuse(name, "the header has a unit for some of the positions; expected one for all or none");
   }
-  return declared;
+  return *declared;
 }
 
 bool contradict(const FileUnit& header, const FileUnit& option) {
@@ -144,16 +134,8 @@ double PoseRows::metres_of(const LabelColumn& column) const {
 }
 
 Objection PoseRows::add(std::string_view line) {
-  switch (format_) {
-    case TrajectoryFormat::kMatrix:
-      return add_matrix(line);
-    case TrajectoryFormat::kTum:
-    case TrajectoryFormat::kPoseXyzw:
-    case TrajectoryFormat::kPoseWxyz:
-      return add_quaternion(line);
-    default:
-      return add_columns(line);
-  }
+  if (format_ == TrajectoryFormat::kMatrix) return add_matrix(line);
+  return columns_ ? add_columns(line) : add_quaternion(line);
 }
 
 PoseRows PoseRows::for_lines(std::size_t lines) const {
@@ -240,7 +222,7 @@ Objection PoseRows::add_quaternion(std::string_view line) {
 }
 
 Objection PoseRows::add_columns(std::string_view line) {
-  split_quoted_fields(line, columns_->separator, fields_);
+  split_fields(line, columns_->separator, fields_);
   if (fields_.size() != columns_->fields) {
     return {objection_to_fields(line, fields_.size(), columns_->fields)};
   }

@@ -136,7 +136,7 @@ class TextTrajectory {
   /// Determines the format by the first line of numbers.
   void start(std::string_view line) {
     std::vector<std::string_view> fields;
-    split_quoted_fields(line, columns_ ? columns_->separator : ',', fields);
+    split_fields(line, columns_ ? columns_->separator : ',', fields);
     if (format_ == TrajectoryFormat::kEuroc) {
       if (fields.size() < 8) {
         fail({std::to_string(fields.size()) +

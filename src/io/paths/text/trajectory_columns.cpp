@@ -200,26 +200,18 @@ Largest largest_of(std::span<const AttitudeRow> rows) {
   return most;
 }
 
-/// The unit named by the texts in a header; the first that is not empty must hold for all.
+std::optional<AngleUnit> angle_unit_of(std::string_view text) {
+  if (text.starts_with("deg") || text == "\xC2\xB0") return AngleUnit::kDegrees;
+  return text.starts_with("rad") ? std::optional(AngleUnit::kRadians) : std::nullopt;
+}
+
+/// The unit of angles that a header gives, which must hold for all of them.
 AngleUnit declared_unit(std::span<const std::string> texts, const std::string& name) {
-  AngleUnit unit = AngleUnit::kDeclared;
-  std::size_t declared = 0;
-  for (const std::string& text : texts) {
-    if (text.empty()) continue;
-    const bool degrees = text.starts_with("deg") || text == "\xC2\xB0";
-    if (!degrees && !text.starts_with("rad")) {
-      refuse(name, "the header has angles in " + excerpt(text) + "; expected deg or rad");
-    }
-    const AngleUnit found = degrees ? AngleUnit::kDegrees : AngleUnit::kRadians;
-    if (declared++ > 0 && found != unit) {
-      refuse(name, "the header has angles in degrees and in radians; expected one unit");
-    }
-    unit = found;
-  }
-  if (declared != 0 && declared != texts.size()) {
+  const auto unit = common_unit<AngleUnit>(texts, "angles", "deg or rad", angle_unit_of, name);
+  if (unit && std::ranges::count(texts, "") != 0) {
     refuse(name, "the header has a unit for some of the angles; expected it for all or none");
   }
-  return unit;
+  return unit.value_or(AngleUnit::kDeclared);
 }
 
 const char* text_of(AngleUnit unit) { return unit == AngleUnit::kDegrees ? "degrees" : "radians"; }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +36,33 @@ struct PoseColumns {
   std::array<LabelColumn, kPoseLabelCount> labels{};  ///< in the order of the labels
   std::vector<std::string> unread{};  ///< names of the columns that no pose is made from
 };
+
+/// The unit that a header gives for some columns, of which each may lack it; nullopt where all do.
+/// texts: the units as they are written, or empty. what: what is in the columns, for messages.
+/// unit_of: reads a unit; nullopt for anything else than what is expected. name: the file's. Throws
+/// InputError.
+template <typename Unit>
+std::optional<Unit> common_unit(std::span<const std::string> texts, const std::string& what,
+                                const std::string& expected,
+                                std::optional<Unit> (*unit_of)(std::string_view),
+                                const std::string& name) {
+  std::optional<Unit> common;
+  std::string first;  // the first unit, in quotes
+  for (const std::string& text : texts) {
+    if (text.empty()) continue;
+    const auto unit = unit_of(text);
+    if (!unit) {
+      refuse(name, "the header has " + what + " in " + excerpt(text) + "; expected " + expected);
+    }
+    if (common && *common != *unit) {
+      refuse(name, "the header has " + what + " in " + first + " and in " + excerpt(text) +
+                       "; expected one unit");
+    }
+    if (!common) first = excerpt(text);
+    common = unit;
+  }
+  return common;
+}
 
 /// The columns that a header names; nullopt where one is missing or named twice.
 std::optional<PoseColumns> pose_columns(const TableHeader& header);

@@ -4,7 +4,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <charconv>
 #include <span>
 
 #include "io/files/parallel_loop.hpp"
@@ -82,12 +81,7 @@ bool parse_point(std::string_view line, Vec3& point) {
 }
 
 std::optional<std::uint64_t> count_in(std::string_view line) {
-  while (!line.empty() && is_blank(line.back())) line.remove_suffix(1);
-  std::uint64_t value = 0;
-  const char* const end = line.data() + line.size();
-  const auto [stop, error] = std::from_chars(line.data(), end, value);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return value;
+  return parse_count(line.substr(0, line.find_last_not_of(" \t") + 1));
 }
 
 std::uint64_t most_points_in_rest(const InputBuffer& input) {
@@ -98,7 +92,7 @@ std::uint64_t most_points_in_rest(const InputBuffer& input) {
 
 bool PointLine::parse(std::string_view line, Vec3& point) {
   if (columns_ == kFirstThree) return parse_point(line, point);
-  split_quoted_fields(line, separator_, fields_);
+  split_fields(line, separator_, fields_);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (columns_[axis] >= fields_.size()) return false;
     const auto value = parse_whole_number(fields_[columns_[axis]]);
@@ -140,7 +134,7 @@ char separator_of(std::string_view line) {
 
 std::size_t count_fields(std::string_view line) {
   std::vector<std::string_view> fields;
-  split_quoted_fields(line, separator_of(line), fields);
+  split_fields(line, separator_of(line), fields);
   return fields.size();
 }
 

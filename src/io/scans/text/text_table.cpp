@@ -40,23 +40,14 @@ void split_fields(std::string_view line, char separator, std::vector<std::string
     }
     return;
   }
-  for (std::size_t start = 0;;) {
-    const std::size_t end = std::min(line.find(separator, start), line.size());
-    fields.push_back(line.substr(start, end - start));
-    if (end == line.size()) break;
-    start = end + 1;
-  }
-}
-
-void split_quoted_fields(std::string_view line, char separator,
-                         std::vector<std::string_view>& fields) {
-  split_fields(line, separator, fields);
-  if (separator == ' ' || line.find('"') == std::string_view::npos) return;
-  fields.clear();
+  const bool has_quotes = line.find('"') != std::string_view::npos;
   for (std::size_t start = 0;;) {
     std::size_t end = std::min(line.find(separator, start), line.size());
-    const std::size_t open = std::min(line.find_first_not_of(" \t", start), line.size());
-    if (open < end && line[open] == '"') end = std::max(end, end_of_quoted(line, open, separator));
+    if (has_quotes) {
+      const std::size_t open = std::min(line.find_first_not_of(" \t", start), line.size());
+      if (open < end && line[open] == '"')
+        end = std::max(end, end_of_quoted(line, open, separator));
+    }
     fields.push_back(line.substr(start, end - start));
     if (end == line.size()) break;
     start = end + 1;
@@ -178,7 +169,7 @@ TableHeader parse_table_header(std::string_view line, char separator) {
                      : line.find(',') != std::string_view::npos ? ','
                                                                 : ' ';
   std::vector<std::string_view> fields;
-  split_quoted_fields(line, header.separator, fields);
+  split_fields(line, header.separator, fields);
   for (const std::string_view field : fields) {
     // In "X [m] Y [m]", where blanks separate columns, the unit is a field of its own.
     if (header.separator == ' ' && !header.units.empty() && field.find_first_of("[(") == 0) {
@@ -261,30 +252,29 @@ std::string other_table(const TableHeader& header) {
   return {};
 }
 
-TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns) {
-  TableUnit out;
+std::string take_units(const TableHeader& header, const CoordinateColumns& columns,
+                       StatedCrs& out) {
   const NamedUnit* found = nullptr;
+  double heights = 0;
   for (std::size_t k = 0; k < columns.size(); ++k) {
     if (columns[k] >= header.units.size()) continue;
     const std::string& unit = header.units[columns[k]];
     const NamedUnit* const known = find_unit(unit);
     const bool read = known != nullptr && known->environment != LengthUnit::kUnknown;
     const bool of_heights = k == 2 && known != nullptr && found != nullptr;
-    if (!read && !of_heights && (known != nullptr || is_one_of(unit, kOthers))) {
-      return {.refused = unit};
-    }
-    if (k == 2 && known != nullptr) out.heights = known->metres();
+    if (!read && !of_heights && (known != nullptr || is_one_of(unit, kOthers))) return unit;
+    if (k == 2 && known != nullptr) heights = known->metres();
     if (!read || of_heights) continue;
     if (found != nullptr && found != known) {
-      return {.refused =
-                  std::string(found->symbol) + " and " + std::string(known->symbol) + " together"};
+      return std::string(found->symbol) + " and " + std::string(known->symbol) + " together";
     }
     found = known;
   }
-  if (found == nullptr) return out;
+  out.height_unit = heights;
+  if (found == nullptr) return {};
   out.unit = found->environment;
   out.any_foot = found->any_foot;
-  return out;
+  return {};
 }
 
 TextTable::TextTable(InputBuffer input, char separator)
@@ -372,7 +362,7 @@ TableColumn TextTable::needed(std::string_view name, const char* otherwise) cons
 
 void TextTable::take_row(std::size_t most, const char* rows) {
   if (rows_++ == most) refuse_here("has more " + std::string(rows) + " than " + format_count(most));
-  split_quoted_fields(line_, header_.separator, fields_);
+  split_fields(line_, header_.separator, fields_);
   if (fields_.size() != header_.names.size()) {
     refuse_here(objection_to_fields(line_, fields_.size(), header_.names.size()));
   }

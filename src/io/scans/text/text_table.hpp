@@ -52,14 +52,10 @@ std::vector<std::string> other_columns(const TableHeader& header,
 /// The lower-case form of a name, as TableHeader holds it, with a unit after `_`.
 std::string table_name(std::string_view field);
 
-/// Splits a line of data in the same way as its header: at every comma or semicolon, or at runs of
-/// blanks. fields: views of `line`, including blanks around them; the vector keeps its capacity.
+/// Splits a line of data in the same way as its header: at runs of blanks, or at every comma or
+/// semicolon, except within a field in double quotes (RFC 4180). fields: views of `line`, including
+/// blanks around them; the vector keeps its capacity.
 void split_fields(std::string_view line, char separator, std::vector<std::string_view>& fields);
-
-/// Splits a line of CSV (RFC 4180), where a separator within a field in double quotes does not
-/// count.
-void split_quoted_fields(std::string_view line, char separator,
-                         std::vector<std::string_view>& fields);
 
 /// What a field says: without blanks around it, and without its double quotes, within which two of
 /// them stand for one (RFC 4180).
@@ -92,15 +88,9 @@ std::optional<PlanColumns> plan_columns(const TableHeader& header);
 /// What kind of table the names indicate if not one of points, for a message; otherwise empty.
 std::string other_table(const TableHeader& header);
 
-/// The units of the columns x, y and z as the header gives them.
-struct TableUnit {
-  LengthUnit unit = LengthUnit::kUnknown;  ///< of x and y, or of z where they name none
-  bool any_foot = false;                   ///< see StatedCrs
-  double heights = 0;                      ///< metres per unit of z; 0 where it names none
-  /// The unit that is not read, or the two of x and y that differ; otherwise empty.
-  std::string refused = {};
-};
-TableUnit unit_of(const TableHeader& header, const CoordinateColumns& columns);
+/// Takes the units of the columns x, y and z as the header gives them. Returns the unit that is not
+/// read, or the two of x and y that differ, and takes none then; otherwise empty.
+std::string take_units(const TableHeader& header, const CoordinateColumns& columns, StatedCrs& out);
 
 /// A column of a table, and how its numbers are converted.
 struct TableColumn {

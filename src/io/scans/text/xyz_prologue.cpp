@@ -232,6 +232,7 @@ class PrologueReader {
       : input_(input), options_(options) {}
 
   XyzPrologue read() {
+    out_.info.text_table = true;
     if (input_.size() == 0u) refuse(input_.name(), "is empty; expected points, one a line");
     input_.begin_text();
     std::string_view line;
@@ -241,7 +242,7 @@ class PrologueReader {
       line = without_leading_blanks(line);
       if (is_text_comment(line)) {
         note_comment(line);
-      } else if (!header_ && !out_.declared_points && count_in(line)) {
+      } else if (!header_ && !out_.info.declared_points && count_in(line)) {
         read_count(line);
       } else if (!header_ && !is_point(line)) {
         read_header(line);
@@ -280,8 +281,9 @@ class PrologueReader {
     if (!input_.line_terminated()) {
       fail("expected a line break behind the number of points", false);
     }
-    out_.declared_points = count_in(line);
+    out_.info.declared_points = count_in(line);
     out_.count_line = input_.line();
+    out_.refuses_cut = true;
   }
 
   /// Whether a first line is data, judged by the columns as far as they are known.
@@ -350,7 +352,7 @@ class PrologueReader {
   /// header.
   static bool has_number(std::string_view line, char separator, const CoordinateColumns& columns) {
     std::vector<std::string_view> fields;
-    split_quoted_fields(line, separator, fields);
+    split_fields(line, separator, fields);
     return std::any_of(columns.begin(), columns.end(), [&](std::size_t column) {
       return column < fields.size() && parse_whole_number(fields[column]);
     });
@@ -407,21 +409,18 @@ class PrologueReader {
   }
 
   void use(const TableHeader& header, const CoordinateColumns& columns, char separator) {
-    const TableUnit unit = unit_of(header, columns);
-    if (!unit.refused.empty()) {
-      const std::string what = "the coordinates are in " + unit.refused + " by the header";
+    const std::string refused = take_units(header, columns, out_.info);
+    if (!refused.empty()) {
+      const std::string what = "the coordinates are in " + refused + " by the header";
       if (options_.columns.empty()) fail(what + "; expected metres: convert them first", false);
       warn("other-unit", what + ", and are read as metres as they are");
     }
     out_.line = PointLine(columns, separator);
-    out_.unit = unit.unit;
-    out_.any_foot = unit.any_foot;
-    out_.height_unit = unit.heights;
     all_named_ = all_named_ || !options_.columns.empty();
   }
 
   void warn(WarningCode code, const std::string& what) {
-    out_.remarks.push_back(warning(code, input_.name() + ": " + what));
+    out_.info.remarks.push_back(warning(code, input_.name() + ": " + what));
   }
 
   void warn_of_misfit(const Comment& comment) {

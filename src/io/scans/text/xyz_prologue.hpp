@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <vector>
 
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/point_reader.hpp"
@@ -12,13 +10,11 @@ namespace clearway {
 
 /// What a text file of points declares before its first point.
 struct XyzPrologue {
-  PointLine line;
-  std::optional<std::uint64_t> declared_points;
-  std::uint64_t count_line = 0;  ///< line of declared_points
-  LengthUnit unit = LengthUnit::kUnknown;
-  bool any_foot = false;   ///< see StatedCrs
-  double height_unit = 0;  ///< see StatedCrs
-  std::vector<Message> remarks;
+  PointLine line = {};
+  CloudInfo info = {};
+  std::uint64_t count_line = 0;  ///< line of the number of points, where the file declares one
+  /// Whether a last line that lacks values or digits is refused, see OpenEnd.
+  bool refuses_cut = false;
 };
 
 /// Reads everything before the first point and leaves the input there. Throws InputError for a

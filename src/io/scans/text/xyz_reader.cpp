@@ -49,20 +49,13 @@ namespace {
 
 class XyzReader final : public PointReader {
  public:
-  XyzReader(InputBuffer input, const PointReadOptions& options, std::vector<Message> remarks)
-      : input_(std::move(input)), may_choose_(options.may_choose) {
-    XyzPrologue prologue = read_xyz_prologue(input_, options);
-    line_ = std::move(prologue.line);
-    info_.declared_points = prologue.declared_points;
-    info_.unit = prologue.unit;
-    info_.any_foot = prologue.any_foot;
-    info_.height_unit = prologue.height_unit;
-    info_.remarks = std::move(remarks);
-    info_.remarks.insert(info_.remarks.end(), prologue.remarks.begin(), prologue.remarks.end());
-    info_.text_table = true;
-    remarks_at_start_ = info_.remarks.size();
-    first_point_ = input_.mark();
-    if (prologue.declared_points) first_ = {*prologue.declared_points, prologue.count_line};
+  /// may_choose: whether the caller may choose columns, which a refusal then advises.
+  XyzReader(InputBuffer input, XyzPrologue prologue, bool may_choose)
+      : input_(std::move(input)),
+        may_choose_(may_choose),
+        prologue_(std::move(prologue)),
+        remarks_at_start_(info_.remarks.size()),
+        first_point_(input_.mark()) {
     start();
     if (is_counted()) check_room();
   }
@@ -106,7 +99,7 @@ class XyzReader final : public PointReader {
     std::string_view line;
     if (!next_point_line(line)) return false;
     Vec3 point{};
-    if (!line_.parse(line, point)) refuse_point(line);
+    if (!prologue_.line.parse(line, point)) refuse_point(line);
     batch.positions.push_back(point);
     open_end_.see(input_, line);
     return true;
@@ -119,8 +112,8 @@ class XyzReader final : public PointReader {
       return false;
     }
     const std::uint64_t most = is_counted() ? count_.points - next_ : ~std::uint64_t{0};
-    const auto parse =
-        PointLineBlocks::of_lines([line = line_](std::string_view text, Vec3& point) mutable {
+    const auto parse = PointLineBlocks::of_lines(
+        [line = prologue_.line](std::string_view text, Vec3& point) mutable {
           text = without_leading_blanks(text);
           if (is_text_comment(text)) return PointLineBlocks::Line::kNothing;
           return line.parse(text, point) ? PointLineBlocks::Line::kPoint
@@ -140,7 +133,7 @@ class XyzReader final : public PointReader {
     declared_ = first_.points;
     counts_ = 1;
     next_ = 0;
-    open_end_ = OpenEnd(is_counted());
+    open_end_ = OpenEnd(prologue_.refuses_cut);
     finished_ = false;
     blocks_.clear();
     in_turn_ = 1;
@@ -186,9 +179,10 @@ class XyzReader final : public PointReader {
 
   [[noreturn]] void refuse_point(std::string_view line) const {
     std::string where = "the coordinates x y z";
-    if (line_.columns() != kFirstThree) {
+    const CoordinateColumns& columns = prologue_.line.columns();
+    if (columns != kFirstThree) {
       where = "in columns";
-      for (const std::size_t column : line_.columns()) where += " " + std::to_string(column + 1);
+      for (const std::size_t column : columns) where += " " + std::to_string(column + 1);
     }
     std::string after;
     if (is_counted()) {
@@ -214,11 +208,11 @@ class XyzReader final : public PointReader {
 
   InputBuffer input_;
   bool may_choose_;
-  CloudInfo info_;
-  PointLine line_;
-  std::size_t remarks_at_start_ = 0;
+  XyzPrologue prologue_;
+  CloudInfo& info_ = prologue_.info;
+  std::size_t remarks_at_start_;
   InputBuffer::Mark first_point_;
-  Count first_;
+  Count first_{info_.declared_points.value_or(0), prologue_.count_line};
   Count count_;                 ///< the count whose points are being read
   std::uint64_t declared_ = 0;  ///< sum of all counts up to count_
   std::uint64_t counts_ = 0;    ///< number of counts so far, including count_
@@ -237,7 +231,14 @@ std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions&
     throw UsageError(std::to_string(options.columns.size()) +
                      " columns chosen; expected three, of x, y and z");
   }
-  return std::make_unique<XyzReader>(std::move(input), options, std::move(remarks));
+  XyzPrologue prologue = read_xyz_prologue(input, options);
+  std::vector<Message>& known = prologue.info.remarks;
+  known.insert(known.begin(), remarks.begin(), remarks.end());
+  return std::make_unique<XyzReader>(std::move(input), std::move(prologue), options.may_choose);
+}
+
+std::unique_ptr<PointReader> read_xyz(InputBuffer input, XyzPrologue prologue) {
+  return std::make_unique<XyzReader>(std::move(input), std::move(prologue), false);
 }
 
 }  // namespace clearway

@@ -10,6 +10,7 @@
 #include "clearway/progress.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/scans/text/xyz_prologue.hpp"
 
 namespace clearway {
 
@@ -44,5 +45,8 @@ class OpenEnd {
 /// choose the columns. `remarks` come before the reader's own. The input must be able to seek.
 std::unique_ptr<PointReader> read_xyz(InputBuffer input, const PointReadOptions& options = {},
                                       std::vector<Message> remarks = {});
+
+/// Reads such text from the input's position on, of which everything before is known.
+std::unique_ptr<PointReader> read_xyz(InputBuffer input, XyzPrologue prologue);
 
 }  // namespace clearway

@@ -20,14 +20,6 @@ constexpr std::size_t kFrameNumbers = 17;
 constexpr std::array<std::size_t, 3> kAxis{2, 0, 1};
 constexpr std::array<double, 3> kSign{1, -1, 1};
 
-bool is_blank_line(std::string_view line) {
-  return skip_blanks(line.data(), line.data() + line.size()) == line.data() + line.size();
-}
-
-[[noreturn]] void refuse_file(const InputBuffer& input, const std::string& what) {
-  refuse_line(input.name(), input.line(), what);
-}
-
 }  // namespace
 
 Vec3 from_threedtk(const Vec3& point) {
@@ -97,44 +89,38 @@ Objection pose_of_threedtk_frame(std::span<const double> numbers, bool allow_non
   return pose_of_matrix(from_threedtk(matrix), allow_non_rigid, pose);
 }
 
-Pose read_threedtk_pose(InputBuffer& input) {
+Pose read_threedtk_pose(TextTable& table) {
   std::array<double, 7> numbers{};
   std::size_t count = 0;
-  std::string_view line;
-  input.begin_text();
-  while (input.next_line(line)) {
-    if (is_blank_line(line)) continue;
-    const auto found = parse_number_line(line, std::span(numbers).subspan(count));
+  while (table.next()) {
+    const auto found = parse_number_line(table.line(), std::span(numbers).subspan(count));
     if (!found || count + *found > numbers.size()) {
-      refuse_file(input, excerpt(line) +
-                             "; expected six numbers in all, x y z in centimetres and three "
-                             "angles in degrees");
+      table.refuse_here(excerpt(table.line()) +
+                        "; expected six numbers in all, x y z in centimetres and three angles in "
+                        "degrees");
     }
     count += *found;
   }
   Pose pose{};
   const Objection objection = pose_of_threedtk_euler(std::span(numbers).first(count), pose);
-  if (!objection.text.empty()) refuse(input.name(), objection.text);
+  if (!objection.text.empty()) refuse(table.name(), objection.text);
   return pose;
 }
 
-Pose read_threedtk_frames(InputBuffer& input) {
+Pose read_threedtk_frames(TextTable& table) {
   std::array<double, kFrameNumbers> numbers{};
   std::optional<Pose> last;
-  std::string_view line;
-  input.begin_text();
-  while (input.next_line(line)) {
-    if (is_blank_line(line)) continue;
-    const auto found = parse_number_line(line, numbers);
+  while (table.next()) {
+    const auto found = parse_number_line(table.line(), numbers);
     if (!found || *found > numbers.size()) {
-      refuse_file(input,
-                  excerpt(line) + "; expected 17 numbers, a 4x4 matrix and the colour of the scan");
+      table.refuse_here(excerpt(table.line()) +
+                        "; expected 17 numbers, a 4x4 matrix and the colour of the scan");
     }
     const Objection objection =
         pose_of_threedtk_frame(std::span(numbers).first(*found), false, last.emplace());
-    if (!objection.text.empty()) refuse_file(input, objection.text);
+    if (!objection.text.empty()) table.refuse_here(objection.text);
   }
-  if (!last) refuse(input.name(), "holds no pose; expected lines of 17 numbers");
+  if (!last) refuse(table.name(), "holds no pose; expected lines of 17 numbers");
   return *last;
 }
 

@@ -6,7 +6,7 @@
 #include "clearway/pose.hpp"
 #include "clearway/vec3.hpp"
 #include "io/paths/pose_input.hpp"
-#include "io/scans/input_buffer.hpp"
+#include "io/scans/text/text_table.hpp"
 
 /// Conversion between 3DTK's frame and Clearway's. 3DTK is left-handed, in centimetres: x right,
 /// y up, z forward. Its readers convert right-handed metres with x forward, y left and z up by
@@ -38,9 +38,9 @@ Objection pose_of_threedtk_euler(std::span<const double> numbers, Pose& pose);
 Objection pose_of_threedtk_frame(std::span<const double> numbers, bool allow_non_rigid, Pose& pose);
 
 /// Reads a .pose file, whose numbers may be on any lines. Throws InputError.
-Pose read_threedtk_pose(InputBuffer& input);
+Pose read_threedtk_pose(TextTable& table);
 /// Reads a .frames file to its end. The last line is used, which is where registration left the
 /// scan. Throws InputError, also for a malformed line before the last one.
-Pose read_threedtk_frames(InputBuffer& input);
+Pose read_threedtk_frames(TextTable& table);
 
 }  // namespace clearway

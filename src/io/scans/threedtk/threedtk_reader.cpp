@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/geometry/predicate.hpp"
 #include "core/messages/messages.hpp"
 #include "io/files/input_error.hpp"
 #include "io/scans/text/point_blocks.hpp"
@@ -67,94 +68,58 @@ Pose find_pose(const fs::path& scan, std::vector<Message>& remarks) {
                               scan.string() + ": has a .pose file only, while other scans of the "
                                               "folder have .frames. It may not be registered"));
   }
-  InputBuffer input = InputBuffer::open_regular(*file);
-  return framed ? read_threedtk_frames(input) : read_threedtk_pose(input);
+  TextTable table(InputBuffer::open_regular(*file));
+  return framed ? read_threedtk_frames(table) : read_threedtk_pose(table);
 }
 
+/// Skips lines before the first point that are no points, such as counts or what the scanner
+/// recorded.
+void skip_header(InputBuffer& input) {
+  input.begin_text();
+  InputBuffer::Mark start = input.mark();
+  std::string_view line;
+  for (int lines = 0; next_data_line(input, line); ++lines, start = input.mark()) {
+    Vec3 point{};
+    if (parse_point(line, point)) break;
+    if (lines == kMostHeaderLines) {
+      refuse_line(input.name(), input.line(),
+                  excerpt(line) + "; expected points x y z after ten other lines at most");
+    }
+  }
+  input.return_to(start);
+}
+
+/// Places the points of a scan by its pose.
 class ThreedtkReader final : public PointReader {
  public:
-  ThreedtkReader(InputBuffer input, const fs::path& path) : input_(std::move(input)) {
-    pose_ = find_pose(path, info_.remarks);
-    info_.unit = LengthUnit::kMetre;
-    const double* t = pose_.translation;
-    info_.origins = {{0, Vec3{t[0], t[1], t[2]}}};
-    info_.origins_rest_on = "poses of 3DTK";
-    skip_header();
-    first_point_ = input_.mark();
+  ThreedtkReader(InputBuffer input, const fs::path& path) {
+    XyzPrologue known{.refuses_cut = true};
+    pose_ = find_pose(path, known.info.remarks);
+    known.info.unit = LengthUnit::kMetre;
+    known.info.origins = {{0, pose_.position()}};
+    known.info.origins_rest_on = "poses of 3DTK";
+    skip_header(input);
+    points_ = read_xyz(std::move(input), std::move(known));
   }
 
-  const CloudInfo& info() const override { return info_; }
+  const CloudInfo& info() const override { return points_->info(); }
 
   bool read(PointBatch& batch) override {
-    batch.quanta.clear();
-    batch.absent.clear();
-    batch.positions.resize(kBatchPoints);
-    std::size_t count = 0;
-    std::string_view line;
-    while (count < kBatchPoints && next_data_line(input_, line)) {
-      Vec3 point{};
-      if (!parse_point(line, point)) {
-        refuse_line(input_.name(), input_.line(),
-                    excerpt(line) + "; expected three numbers, the coordinates x y z");
-      }
-      open_end_.see(input_, line);
-      batch.positions[count++] = place(from_threedtk(point));
-    }
-    batch.positions.resize(count);
+    const bool more = points_->read(batch);
+    for (Vec3& point : batch.positions) point = transform(pose_, from_threedtk(point));
     batch.turn = turn_of(pose_);
-    if (count == 0) finish();
-    return count > 0;
+    return more;
   }
 
-  void rewind() override {
-    input_.return_to(first_point_);
-    open_end_ = OpenEnd();
-  }
+  void rewind() override { points_->rewind(); }
 
   std::vector<std::uint64_t> lines_of(std::span<const std::uint64_t> points) override {
-    rewind();
-    std::string_view line;
-    return lines_of_points(points, input_, [&] { return next_data_line(input_, line); });
+    return points_->lines_of(points);
   }
 
  private:
-  Vec3 place(const Vec3& p) const {
-    const double* r = pose_.rotation;
-    const double* t = pose_.translation;
-    return {r[0] * p.x + r[1] * p.y + r[2] * p.z + t[0],
-            r[3] * p.x + r[4] * p.y + r[5] * p.z + t[1],
-            r[6] * p.x + r[7] * p.y + r[8] * p.z + t[2]};
-  }
-
-  /// Skips lines before the first point that are no points, such as counts or what the scanner
-  /// recorded.
-  void skip_header() {
-    input_.begin_text();
-    InputBuffer::Mark start = input_.mark();
-    std::string_view line;
-    for (int lines = 0; next_data_line(input_, line); ++lines, start = input_.mark()) {
-      Vec3 point{};
-      if (parse_point(line, point)) break;
-      if (lines == kMostHeaderLines) {
-        refuse_line(input_.name(), input_.line(),
-                    excerpt(line) + "; expected points x y z after ten other lines at most");
-      }
-    }
-    input_.return_to(start);
-  }
-
-  void finish() {
-    if (finished_) return;
-    finished_ = true;
-    open_end_.append_to(info_.remarks, input_.name());
-  }
-
-  InputBuffer input_;
-  CloudInfo info_;
   Pose pose_{};
-  InputBuffer::Mark first_point_;
-  OpenEnd open_end_;
-  bool finished_ = false;
+  std::unique_ptr<PointReader> points_;  ///< in the frame of 3DTK
 };
 
 }  // namespace

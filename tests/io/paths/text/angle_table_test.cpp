@@ -70,7 +70,7 @@ TEST_CASE("angles whose unit or frame is not sure are refused") {
                       {}, Remedy::kDeclareAngles);
   check_paths_refused(R"(
     x,y,z,roll_rad,pitch_rad,heading_rad\n1,2,3,20,0,0\n  | look like degrees
-    x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n   | degrees and in radians
+    x,y,z,roll_deg,pitch_rad,heading_deg\n1,2,3,0,0,0\n   | angles in "deg" and in "rad"
     x,y,z,roll_deg,pitch,heading\n1,2,3,0,0,0\n           | all or none
     x,y,z,roll[gon],pitch[gon],heading[gon]\n1,2,3,0,0,0\n | gon
     x,y,z,roll_deg,pitch_deg,heading_deg\n1,2,3,0,nan,0\n | line 2 ... finite
