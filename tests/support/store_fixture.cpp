@@ -13,12 +13,8 @@ namespace clearway::test {
 
 void write_las(const std::filesystem::path& path, std::span<const Quantum> points,
                const Quantisation& quantisation) {
-  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
   const File file = File::create(path);
-  LasWriter writer(file, {.quantisation = quantisation,
-                          .points = points.size(),
-                          .bounds = {{kLeast, kLeast, kLeast}, {kMost, kMost, kMost}}});
+  LasWriter writer(file, LasFormat::of_points(quantisation, points.size()));
   writer.write(points);
   writer.finish();
 }

@@ -58,9 +58,9 @@ void scan_in_order(const Scanner& scanner, int threads, LasWriter& writer, Progr
 void write_environment(const Scene& scene, std::uint64_t seed, const File& file, int threads,
                        Progress& progress) {
   const Scanner scanner(scene.path, scene.world, scene.plan, seed);
-  LasWriter writer(file, {.quantisation = Scanner::kQuantisation,
-                          .points = scene.sizes.points,
-                          .bounds = scanner.bounds()});
+  const std::uint64_t points = scene.sizes.points;
+  LasWriter writer(file, LasFormat::of_points(Scanner::kQuantisation, points),
+                   LasTotals{points, scanner.bounds(), {points}});
   progress.begin("scan", scene.sizes.points, "points");
   const int count = threads > 0 ? threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,

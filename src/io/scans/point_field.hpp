@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -17,6 +18,8 @@ struct PointField {
   std::string name;
   Type type = Type::kUint32;
   std::string description{};  ///< up to 31 characters, in formats that keep one
+  /// The value of points that have none, for kDouble in formats that name one.
+  std::optional<double> none{};
 
   std::size_t bytes() const { return type == Type::kUint32 ? 4 : type == Type::kClass ? 1 : 8; }
 };

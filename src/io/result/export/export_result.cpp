@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstddef>
-#include <optional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -111,27 +111,7 @@ Quanta quanta_of(const ResultReader& result, const Rows& rows) {
                    ": expected a whole multiple of the scale above the offset");
 }
 
-template <typename Value>
-constexpr PointField::Type field_type_of() {
-  return std::is_same_v<Value, double>          ? PointField::Type::kDouble
-         : std::is_same_v<Value, std::uint64_t> ? PointField::Type::kUint64
-         : std::is_same_v<Value, std::uint8_t>  ? PointField::Type::kClass
-                                                : PointField::Type::kUint32;
-}
-
-/// The columns of a table that are exported as fields of its points.
-template <typename Rows>
-std::vector<PointField> fields_of(const ResultHeader& header) {
-  std::vector<PointField> out;
-  for_each_column<Rows>([&](const auto& column) {
-    if (column.field == nullptr || !column.is_in(header)) return;
-    using Value = typename std::decay_t<decltype(column)>::Value;
-    out.push_back({column.dataset, field_type_of<Value>(), column.field});
-  });
-  return out;
-}
-
-/// The values of those columns.
+/// The values of the columns of fields_of().
 template <typename Rows>
 std::vector<FieldValues> values_of(const ResultHeader& header, const Rows& rows) {
   std::vector<FieldValues> out;
@@ -146,13 +126,25 @@ std::vector<FieldValues> values_of(const ResultHeader& header, const Rows& rows)
   return out;
 }
 
+/// Receives the rows of a table front to back and writes them in a format. `Rows` is Collisions,
+/// Nearby or Clearances. Coordinates are written as they are stored, and the columns that the
+/// schema names as fields follow them.
+template <typename Rows>
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  virtual void write(const Rows& rows) = 0;
+  virtual void finish() {}
+};
+
 template <typename Rows>
 class LasSink final : public RowSink<Rows> {
  public:
-  LasSink(const ResultReader& result, const QuantumBox& bounds, const File& file)
+  LasSink(const ResultReader& result, const File& file)
       : result_(result),
-        writer_(file, {result.header().quantisation, result.rows<Rows>(), bounds,
-                       crs_of(result.header()), fields_of<Rows>(result.header())}) {}
+        writer_(file,
+                LasFormat::of_points(result.header().quantisation, result.rows<Rows>(),
+                                     crs_of(result.header()), fields_of<Rows>(result.header()))) {}
 
   void write(const Rows& rows) override {
     writer_.write(quanta_of(result_, rows), values_of(result_.header(), rows));
@@ -206,7 +198,6 @@ class XyzSink final : public RowSink<Rows> {
       }
     });
   }
-  void finish() override {}
 
  private:
   const File& file_;
@@ -259,7 +250,6 @@ class CsvSink final : public RowSink<Rows> {
       }
     });
   }
-  void finish() override {}
 
  private:
   const ResultHeader& header_;
@@ -279,12 +269,15 @@ ExportFormat export_format_of(const std::filesystem::path& output) {
                    ": unknown output format; the name must end in .las, .ply, .xyz or .csv");
 }
 
+namespace {
+
+/// The result and the file must outlive the sink.
 template <typename Rows>
 std::unique_ptr<RowSink<Rows>> make_row_sink(ExportFormat format, const ResultReader& result,
-                                             const QuantumBox& bounds, const File& file) {
+                                             const File& file) {
   switch (format) {
     case ExportFormat::kLas:
-      return std::make_unique<LasSink<Rows>>(result, bounds, file);
+      return std::make_unique<LasSink<Rows>>(result, file);
     case ExportFormat::kPly:
       return std::make_unique<PlySink<Rows>>(result, file);
     case ExportFormat::kXyz:
@@ -296,32 +289,6 @@ std::unique_ptr<RowSink<Rows>> make_row_sink(ExportFormat format, const ResultRe
 }
 
 template <typename Rows>
-QuantumBox bounds_of(const ResultReader& result, const Progress& progress) {
-  std::optional<QuantumBox> box;
-  RowStream<Rows> stream(result);
-  for (Rows rows; stream.read(rows);) {
-    throw_if_stopped(progress);
-    for (const auto& [x, y, z] : quanta_of(result, rows)) {
-      const QuantumBox point{{x, y, z}, {x, y, z}};
-      box = box ? box->united(point) : point;
-    }
-  }
-  return box.value_or(QuantumBox{});
-}
-
-template std::unique_ptr<RowSink<Collisions>> make_row_sink(ExportFormat, const ResultReader&,
-                                                            const QuantumBox&, const File&);
-template std::unique_ptr<RowSink<Clearances>> make_row_sink(ExportFormat, const ResultReader&,
-                                                            const QuantumBox&, const File&);
-template std::unique_ptr<RowSink<Nearby>> make_row_sink(ExportFormat, const ResultReader&,
-                                                        const QuantumBox&, const File&);
-template QuantumBox bounds_of<Collisions>(const ResultReader&, const Progress&);
-template QuantumBox bounds_of<Clearances>(const ResultReader&, const Progress&);
-template QuantumBox bounds_of<Nearby>(const ResultReader&, const Progress&);
-
-namespace {
-
-template <typename Rows>
 void export_table(const ResultReader& result, const std::filesystem::path& output, bool overwrite,
                   Progress& progress) {
   const ExportFormat format = export_format_of(output);
@@ -329,9 +296,7 @@ void export_table(const ResultReader& result, const std::filesystem::path& outpu
   PendingFile pending(output, overwrite);
   {
     const File file = File::create(pending.partial());
-    QuantumBox bounds{};
-    if (format == ExportFormat::kLas) bounds = bounds_of<Rows>(result, progress);
-    const auto sink = make_row_sink<Rows>(format, result, bounds, file);
+    const auto sink = make_row_sink<Rows>(format, result, file);
     progress.begin("export", result.rows<Rows>(), "points");
     RowStream<Rows> stream(result);
     for (Rows rows; stream.read(rows);) {

@@ -1,41 +1,38 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <type_traits>
+#include <vector>
 
 #include "clearway/trajectory.hpp"
-#include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "io/files/file.hpp"
 #include "io/result/result.hpp"
+#include "io/result/tables.hpp"
+#include "io/scans/point_field.hpp"
 
 namespace clearway {
-
-/// Receives the rows of a table front to back and writes them in a format. `Rows` is Collisions,
-/// Nearby or Clearances. Coordinates are written as they are stored, and the columns that the
-/// schema names as fields follow them.
-template <typename Rows>
-class RowSink {
- public:
-  virtual ~RowSink() = default;
-  virtual void write(const Rows& rows) = 0;
-  virtual void finish() = 0;
-};
 
 enum class ExportFormat { kLas, kPly, kXyz, kCsv };
 
 /// The format by the ending of a name. Throws UsageError for any other ending.
 ExportFormat export_format_of(const std::filesystem::path& output);
 
-/// bounds: the box of the points, used only by .las. The result and the file must outlive the sink.
+/// The columns of a table that are exported as fields of its points.
 template <typename Rows>
-std::unique_ptr<RowSink<Rows>> make_row_sink(ExportFormat format, const ResultReader& result,
-                                             const QuantumBox& bounds, const File& file);
-
-/// The box of the stored integers of all points of a table. Throws InputError for a coordinate that
-/// is not on the result's scale.
-template <typename Rows>
-QuantumBox bounds_of(const ResultReader& result, const Progress& progress);
+std::vector<PointField> fields_of(const ResultHeader& header) {
+  std::vector<PointField> out;
+  for_each_column<Rows>([&](const auto& column) {
+    if (column.field == nullptr || !column.is_in(header)) return;
+    using Value = typename std::decay_t<decltype(column)>::Value;
+    constexpr auto kType = std::is_same_v<Value, double>          ? PointField::Type::kDouble
+                           : std::is_same_v<Value, std::uint64_t> ? PointField::Type::kUint64
+                           : std::is_same_v<Value, std::uint8_t>  ? PointField::Type::kClass
+                                                                  : PointField::Type::kUint32;
+    out.push_back({column.dataset, kType, column.field});
+  });
+  return out;
+}
 
 /// Writes the colliding points of `result` to `output`, in constant memory and in the order of the
 /// result. The ending of the output's name decides the format:

@@ -47,8 +47,8 @@ std::vector<std::byte> described(std::span<const std::byte> found, std::size_t b
   }
   while (covered < bytes) {
     const std::size_t field = std::min<std::size_t>(bytes - covered, 255);
-    const auto description = las_extra_bytes("undocumented", LasExtraType::kUndocumented, "",
-                                             static_cast<std::uint8_t>(field));
+    const auto description =
+        las_extra_bytes("undocumented", 0, static_cast<std::uint8_t>(field), "");
     out.insert(out.end(), description.begin(), description.end());
     covered += field;
   }
@@ -76,11 +76,12 @@ LasRecordReader::LasRecordReader(const std::filesystem::path& path)
   read_las_vlrs(input_, header_, records_);
 }
 
-LasRecordFormat LasRecordReader::format() const {
+LasFormat LasRecordReader::format() const {
   const std::size_t extra = header_.record_bytes - kBaseBytes[header_.point_format];
   return {.point_format = header_.point_format,
           .record_bytes = header_.record_bytes,
           .encoding = header_.encoding,
+          .system = "EXTRACTION",
           .quantisation = header_.quantisation,
           .extra_bytes = described(records_.extra_bytes, extra),
           .crs_wkt = {},
@@ -179,7 +180,7 @@ void check_can_copy(const ScanFile& file, std::uint64_t points) {
 class CommonFormat {
  public:
   void add(const LasRecordReader& scan) {
-    const LasRecordFormat format = scan.format();
+    const LasFormat format = scan.format();
     if (format.point_format == 4 || format.point_format == 5 || format.point_format == 9 ||
         format.point_format == 10) {
       refuse(scan.name(), "its records (point format " + std::to_string(format.point_format) +
@@ -200,45 +201,31 @@ class CommonFormat {
                             "file holds one kind. Bring the scans into one point format first");
   }
 
-  const LasRecordFormat& get() const { return format_; }
+  const LasFormat& get() const { return format_; }
 
  private:
-  static std::string description(const LasRecordFormat& format) {
+  static std::string description(const LasFormat& format) {
     return "point format " + std::to_string(format.point_format) + " in records of " +
            std::to_string(format.record_bytes) + " bytes with " +
            ((format.encoding & kGpsTimeBit) != 0 ? "adjusted GPS time" : "GPS week time");
   }
 
   std::string first_;
-  LasRecordFormat format_;
+  LasFormat format_;
 };
 
 /// A point's record followed by extra bytes with its result.
 class ExtendedRecord {
  public:
-  ExtendedRecord(const ResultReader& result, LasRecordFormat& format)
-      : first_pose_(result.header().first_pose),
-        body_(result.header().has_first_bodies()),
-        depth_(result.header().depth),
-        own_bytes_(format.record_bytes) {
-    if (first_pose_) {
-      add_field(format, sizeof(std::uint32_t),
-                las_extra_bytes("first_pose", LasExtraType::kUint32, "first pose that touches"));
+  ExtendedRecord(const ResultReader& result, LasFormat& format)
+      : header_(result.header()), own_bytes_(format.record_bytes) {
+    for (const PointField& field : fields_of<Collisions>(header_)) {
+      if (field.type != PointField::Type::kClass) format.add(field);  // which records have already
     }
-    if (body_) {
-      add_field(format, sizeof(std::uint32_t),
-                las_extra_bytes("body", LasExtraType::kUint32, "body that touches first"));
-    }
-    if (depth_) {
-      add_field(format, sizeof(double),
-                las_extra_bytes("depth", LasExtraType::kDouble, "distance to nearest free point"));
-      add_field(format, sizeof(std::uint64_t),
-                las_extra_bytes("depth_source", LasExtraType::kUint64, "index of that free point"));
-    }
-    if (result.header().clearance > 0) {
+    if (header_.clearance > 0) {
       distances_.emplace(result);
-      add_field(format, sizeof(double),
-                las_extra_bytes("distance", "least distance to the model", kNoDistance));
+      format.add(
+          {"distance", PointField::Type::kDouble, "least distance to the model", kNoDistance});
     }
     bytes_.resize(format.record_bytes);
   }
@@ -248,26 +235,16 @@ class ExtendedRecord {
     std::memcpy(bytes_.data(), record.data(), own_bytes_);
     std::memcpy(bytes_.data(), q.data(), sizeof q);
     std::byte* out = bytes_.data() + own_bytes_;
-    if (first_pose_) {
-      const std::uint32_t pose = row.get(&Collisions::first_pose);
-      std::memcpy(out, &pose, sizeof pose);
-      out += sizeof pose;
-    }
-    if (body_) {
-      const std::uint32_t body = row.get(&Collisions::body);
-      std::memcpy(out, &body, sizeof body);
-      out += sizeof body;
-    }
-    if (depth_) {
-      const double depth = row.get(&Collisions::depth);
-      const std::uint64_t source = row.get(&Collisions::depth_source);
-      std::memcpy(out, &depth, sizeof depth);
-      std::memcpy(out + sizeof depth, &source, sizeof source);
-      out += sizeof depth + sizeof source;
-    }
-    if (!distances_) return bytes_;
-    const double distance = distance_of(row.source());
-    std::memcpy(out, &distance, sizeof distance);
+    const auto append = [&](const auto& value) {
+      std::memcpy(out, &value, sizeof value);
+      out += sizeof value;
+    };
+    for_each_column<Collisions>([&](const auto& column) {
+      constexpr bool is_class = sizeof(typename std::decay_t<decltype(column)>::Value) == 1;
+      if (column.field == nullptr || is_class || !column.is_in(header_)) return;
+      append(row.get(column.values));
+    });
+    if (distances_) append(distance_of(row.source()));
     return bytes_;
   }
 
@@ -277,19 +254,6 @@ class ExtendedRecord {
   }
 
  private:
-  static void add_field(LasRecordFormat& format, std::size_t bytes,
-                        const LasExtraDescription& description) {
-    constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
-    if (format.record_bytes + bytes > kMost ||
-        format.extra_bytes.size() + description.size() > kMost) {
-      throw InputError(
-          "the scans' records are too long to get another field; expected fewer than "
-          "65,524 bytes and 340 fields of extra bytes");
-    }
-    format.record_bytes = static_cast<std::uint16_t>(format.record_bytes + bytes);
-    format.extra_bytes.insert(format.extra_bytes.end(), description.begin(), description.end());
-  }
-
   double distance_of(std::uint64_t source) {
     while (!distances_->at_end() && distances_->source() < source) distances_->advance();
     return !distances_->at_end() && distances_->source() == source
@@ -297,7 +261,7 @@ class ExtendedRecord {
                : kNoDistance;
   }
 
-  bool first_pose_, body_, depth_;
+  const ResultHeader& header_;
   std::size_t own_bytes_;
   std::optional<ClearanceCursor> distances_;
   std::vector<std::byte> bytes_;
@@ -341,12 +305,12 @@ std::array<std::int32_t, 3> checked_place(const ResultReader& result, const LasR
                           ". Give the files and folders that were converted, in the same order");
 }
 
-void copy_records(const ResultReader& result, const std::vector<ScanFile>& files,
-                  LasRecordFormat format, const File& out, Progress& progress) {
+void copy_records(const ResultReader& result, const std::vector<ScanFile>& files, LasFormat format,
+                  const File& out, Progress& progress) {
   format.quantisation = result.header().quantisation;
   format.crs_wkt = result.header().crs_wkt;
   ExtendedRecord extended(result, format);
-  LasRecordWriter writer(out, format);
+  LasWriter writer(out, format);
   std::optional<LasRecordReader> scan;
   std::size_t file = 0;
   for (CollisionCursor row(result); !row.at_end(); row.advance()) {

@@ -14,6 +14,7 @@
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/las/las_records.hpp"
+#include "io/scans/las/las_writer.hpp"
 
 namespace clearway {
 
@@ -26,7 +27,7 @@ class LasRecordReader {
   const std::string& name() const { return input_.name(); }
   const LasPublicHeader& header() const { return header_; }
   /// The format of the records, with descriptions of all extra bytes.
-  LasRecordFormat format() const;
+  LasFormat format() const;
   /// The bytes of a record, valid until the next call. point: below header().points.
   std::span<const std::byte> record(std::uint64_t point);
 

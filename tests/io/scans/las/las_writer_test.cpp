@@ -19,18 +19,26 @@ const QuantumBox kBounds{{-5, -2000000000, 0}, {1, 7, 2000000000}};
 const Quantisation kQuantisation{{0.001, 0.002, 0.0001}, {100, -200, 0.5}};
 const std::string kWkt = "LOCAL_CS[\"site\",UNIT[\"metre\",1]]";
 
-WrittenBytes written(const LasHeader& header, const Quanta& points,
+/// The file of these points with declared totals. That of kPoints, whose totals are those, is the
+/// same where they are not declared.
+WrittenBytes written(const LasFormat& format, const Quanta& points,
                      const std::vector<std::uint32_t>& poses = {}) {
-  const File file = nameless_file();
-  LasWriter writer(file, header);
-  const FieldValues field = std::span<const std::uint32_t>(poses);
-  writer.write(points, std::span(&field, header.fields.size()));
-  writer.finish();
-  return WrittenBytes(file);
+  const auto write = [&](const std::optional<LasTotals>& declared) {
+    const File file = nameless_file();
+    LasWriter writer(file, format, declared);
+    const FieldValues field = std::span<const std::uint32_t>(poses);
+    writer.write(points, std::span(&field, format.fields.size()));
+    writer.finish();
+    return WrittenBytes(file);
+  };
+  const WrittenBytes bytes = write(LasTotals{points.size(), kBounds, {points.size()}});
+  if (points == kPoints) CHECK(bytes.all() == write({}).all());
+  return bytes;
 }
 
-LasHeader header_of(std::uint64_t points) {
-  return {.quantisation = kQuantisation, .points = points, .bounds = kBounds};
+LasFormat format_of(std::uint64_t points, const std::string& crs_wkt = {},
+                    const std::vector<PointField>& fields = {}) {
+  return LasFormat::of_points(kQuantisation, points, crs_wkt, fields);
 }
 
 /// Checks fields of the file: "24:1=2" is that the byte at 24 is 2, "26:32=OTHER" that the text of
@@ -76,7 +84,7 @@ void check_points(const WrittenBytes& bytes, const Quanta& points) {
 }  // namespace
 
 TEST_CASE("LAS 1.2 with point format 0, field by field") {
-  const auto bytes = written(header_of(3), kPoints);
+  const auto bytes = written(format_of(3), kPoints);
   check_fields(bytes,
                "0:4=LASF 4:20= 24:1=1 25:1=2 26:32=OTHER 58:32=Clearway 90:4= 94:2=227 96:4=227 "
                "100:4=0 104:1=0 105:2=20 107:4=3 111:4=3 115:16=");
@@ -86,9 +94,7 @@ TEST_CASE("LAS 1.2 with point format 0, field by field") {
 }
 
 TEST_CASE("LAS 1.4 with a CRS, field by field") {
-  LasHeader header = header_of(3);
-  header.crs_wkt = kWkt;
-  const auto bytes = written(header, kPoints);
+  const auto bytes = written(format_of(3, kWkt), kPoints);
   const std::string size = std::to_string(kWkt.size() + 1);
   check_fields(bytes,
                "6:2=16 25:1=4 94:2=375 100:4=1 104:1=6 105:2=30 107:24= 227:20= 247:8=3 255:8=3 "
@@ -100,10 +106,8 @@ TEST_CASE("LAS 1.4 with a CRS, field by field") {
 }
 
 TEST_CASE("LAS point format 6 with first poses, field by field") {
-  LasHeader header = header_of(3);
-  header.fields = {{"first_pose"}};
   const std::vector<std::uint32_t> poses{0, 4000000000u, 17};
-  const auto bytes = written(header, kPoints, poses);
+  const auto bytes = written(format_of(3, {}, {{"first_pose"}}), kPoints, poses);
   check_fields(bytes,
                "96:4=621 100:4=1 105:2=34 377:16=LASF_Spec 393:2=4 395:2=192 429:2= 431:1=5 "
                "432:1=0 433:32=first_pose 465:124=");
@@ -115,31 +119,28 @@ TEST_CASE("LAS point format 6 with first poses, field by field") {
 }
 
 TEST_CASE("a CRS and first poses together declare both records") {
-  LasHeader header = header_of(1);
-  header.fields = {{"first_pose"}};
-  header.crs_wkt = kWkt;
-  const auto bytes = written(header, {kPoints[1]}, {9});
+  const auto bytes = written(format_of(1, kWkt, {{"first_pose"}}), {kPoints[1]}, {9});
   check_fields(bytes, "100:4=2");
   check_fields(bytes, "2:16=LASF_Spec", 375 + 54 + kWkt.size() + 1);
   check_whole(bytes);
 }
 
 TEST_CASE("a CRS too long for a variable length record goes behind the points") {
-  LasHeader header = header_of(3);
-  header.crs_wkt = std::string(65535, 'w');
-  const auto bytes = written(header, kPoints);
+  std::string wkt(65535, 'w');
+  const auto bytes = written(format_of(3, wkt), kPoints);
   const std::size_t start = bytes.number(235, 8);
   check_fields(bytes, "100:4=0 243:4=1");
   check_fields(bytes, "2:16=LASF_Projection 18:2=2112 20:8=65536", start);
-  CHECK(bytes.all().substr(start + 60) == header.crs_wkt + '\0');
+  CHECK(bytes.all().substr(start + 60) == wkt + '\0');
   check_whole(bytes, 60 + 65536);
-  header.crs_wkt.pop_back();
-  check_fields(written(header, kPoints), "100:4=1");
+  wkt.pop_back();
+  check_fields(written(format_of(3, wkt), kPoints), "100:4=1");
 }
 
 TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
   const File file = nameless_file();
-  LasWriter writer(file, header_of(0x100000000));
+  const std::uint64_t points = 0x100000000;
+  LasWriter writer(file, format_of(points), LasTotals{points, kBounds, {points}});
   writer.write(Quanta(60000, {1, 2, 3}));  // more than the buffer: the header is written
   check_fields(WrittenBytes(file), "25:1=4 107:4=0 247:8=4294967296");
 }
@@ -147,20 +148,20 @@ TEST_CASE("a count beyond 32 bits is declared by LAS 1.4") {
 TEST_CASE("many points through the buffer arrive in order") {
   Quanta points;
   for (std::int32_t i = 0; i < 200000; ++i) points.push_back({i, -i, 2 * i});
-  const auto bytes = written(header_of(points.size()), points);
+  const auto bytes = written(format_of(points.size()), points);
   check_whole(bytes);
   check_points(bytes, points);
 }
 
 TEST_CASE("LAS without points has zero bounds") {
-  const auto bytes = written(header_of(0), {});
+  const auto bytes = written(format_of(0), {});
   check_equal(bytes.size(), 227);
   check_fields(bytes, "25:1=2 179:48=");
 }
 
 TEST_CASE("another number of LAS points than promised is a programmer's mistake") {
   const File file = nameless_file();
-  LasWriter writer(file, header_of(2));
+  LasWriter writer(file, format_of(2), LasTotals{2, kBounds, {2}});
   writer.write(Quanta{kPoints[0]});
   CHECK_THROWS_AS(writer.finish(), std::logic_error);
   const std::vector<std::uint32_t> poses{1, 2, 3};
@@ -170,7 +171,7 @@ TEST_CASE("another number of LAS points than promised is a programmer's mistake"
 
 TEST_CASE("a full disk is a resource error") {
   const File full = File::create("/dev/full");
-  LasWriter writer(full, header_of(1));
+  LasWriter writer(full, format_of(1));
   writer.write(Quanta{kPoints[0]});
   CHECK_THROWS_AS(writer.finish(), ResourceError);
 }
