@@ -86,6 +86,16 @@ struct PointBatch {
   std::optional<Pose> turn = {};
 
   std::size_t size() const { return quanta.size() + positions.size(); }
+  /// Removes all points and keeps the memory.
+  void clear() {
+    quanta.clear();
+    positions.clear();
+    absent.clear();
+    classes.clear();
+    flags.clear();
+    times.clear();
+    turn.reset();
+  }
   bool is_withheld(std::size_t point) const {
     return !flags.empty() && (flags[point] & PointFlags::kWithheld) != 0;
   }

@@ -98,11 +98,7 @@ class LasReader final : public PointReader {
   bool can_rewind() const override { return input_.can_seek(); }
 
   bool read(PointBatch& batch) override {
-    batch.positions.clear();
-    batch.quanta.clear();
-    batch.classes.clear();
-    batch.flags.clear();
-    batch.times.clear();
+    batch.clear();
     const std::size_t most = InputBuffer::kCapacity / header_.record_bytes;
     while (batch.quanta.size() < kBatchPoints) {
       const auto wanted =
@@ -131,10 +127,7 @@ class LasReader final : public PointReader {
     read.count = points_of_piece(piece) * header_.record_bytes;
     read.bytes = std::make_unique_for_overwrite<std::byte[]>(read.count);
     input_.read_at(read.first, read.span());
-    batch.quanta.clear();
-    batch.classes.clear();
-    batch.flags.clear();
-    batch.times.clear();
+    batch.clear();
     append(read.span(), batch);
     if (bytes) *bytes = std::move(read);
   }

@@ -46,10 +46,25 @@ class ChunkDecoder {
   /// Begins a chunk of one point or more. The input must outlive its use.
   virtual void begin(const InputBuffer& input, const Chunk& chunk) = 0;
   /// Decodes the next points of the chunk, of which there must be as many.
-  virtual void decode(PointRoom points) = 0;
+  void decode(PointRoom points);
   /// Called after the chunk's last point. Returns the position where the chunk ends; throws where
   /// that is wrong.
   virtual std::uint64_t finish() = 0;
+
+ protected:
+  /// Decodes points after the first. Returns false for bits that no encoder writes.
+  virtual bool decode_others(PointRoom points) = 0;
+  /// Takes the first point from its record, which is not compressed. point_format: one of those
+  /// that the decoder reads and that have GPS times, where these are wanted.
+  void take_first(const std::byte* record, unsigned point_format);
+
+  // Those of the first point.
+  Quanta quanta_{};
+  std::uint8_t class_ = 0, flags_ = 0;
+  double time_ = 0;
+
+ private:
+  bool is_first_ = false;
 };
 
 /// Makes a decoder for the items and the kind of chunks of a file.

@@ -1,13 +1,19 @@
 #include "io/scans/laz/laz_reader.hpp"
 
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "core/messages/messages.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/parallel_loop.hpp"
 #include "io/scans/laz/chunk_table.hpp"
 #include "io/scans/laz/copc_hierarchy.hpp"
 
@@ -15,97 +21,62 @@ namespace clearway {
 namespace {
 
 using laz::Chunk;
-using laz::Quanta;
 using laz::Scheme;
 
-/// Makes room in the batch for `count` points from index `first` on, as the scheme asks for them.
-laz::PointRoom room_in(PointBatch& batch, std::size_t first, std::size_t count,
-                       const Scheme& scheme) {
-  batch.quanta.resize(first + count);
-  batch.classes.resize(first + count);
-  batch.flags.resize(scheme.with_flags ? first + count : 0);
-  batch.times.resize(scheme.with_times ? first + count : 0);
-  std::uint8_t* const flags = scheme.with_flags ? batch.flags.data() + first : nullptr;
-  double* const times = scheme.with_times ? batch.times.data() + first : nullptr;
-  return {batch.quanta.data() + first, batch.classes.data() + first, flags, times, count};
-}
-
-/// Reads a file with a chunk table.
-class TabledReader final : public PointReader {
+/// Reads the chunks of a file. Where it has a chunk table, several of them are decoded at once, and
+/// it has pieces. Otherwise the place of a chunk is known only once the one before was decoded.
+class LazReader final : public PointReader {
  public:
-  /// cubes: that of each chunk, where the file is COPC; otherwise empty.
-  TabledReader(InputBuffer input, const Scheme& scheme, std::vector<Chunk> chunks,
-               std::vector<Box> cubes, CloudInfo info)
+  /// chunks: nullopt where there is no table. cubes: that of each chunk, where the file is COPC;
+  /// otherwise empty.
+  LazReader(InputBuffer input, const Scheme& scheme, const laz::PointBytes& bytes,
+            std::optional<std::vector<Chunk>> chunks, std::vector<Box> cubes, CloudInfo info)
       : input_(std::move(input)),
-        chunks_(std::move(chunks)),
+        scheme_(scheme),
+        bytes_(bytes),
+        has_table_(chunks.has_value()),
+        chunks_(std::move(chunks).value_or(std::vector<Chunk>{})),
         cubes_(std::move(cubes)),
         info_(std::move(info)),
-        scheme_(scheme),
-        groups_(scheme) {
+        decoders_([scheme] { return laz::make_chunk_decoder(scheme); }) {
     find_pieces();
+    rewind();
   }
 
   const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
-    batch.positions.clear();
-    batch.quanta.clear();
-    batch.classes.clear();
-    batch.flags.clear();
-    batch.times.clear();
-    while (batch.quanta.size() < kBatchPoints) {
-      if (!ready_.empty()) {
-        const auto part = ready_.first(std::min(ready_.size(), kBatchPoints - batch.quanta.size()));
-        const auto classes = groups_.classes().last(ready_.size()).first(part.size());
-        batch.quanta.insert(batch.quanta.end(), part.begin(), part.end());
-        batch.classes.insert(batch.classes.end(), classes.begin(), classes.end());
-        if (scheme_.with_flags) {
-          const auto flags = groups_.flags().last(ready_.size()).first(part.size());
-          batch.flags.insert(batch.flags.end(), flags.begin(), flags.end());
-        }
-        if (scheme_.with_times) {
-          const auto times = groups_.times().last(ready_.size()).first(part.size());
-          batch.times.insert(batch.times.end(), times.begin(), times.end());
-        }
-        ready_ = ready_.subspan(part.size());
-      } else if (next_ == chunks_.size()) {
+    batch.clear();
+    while (batch.size() < kBatchPoints) {
+      if (taken_ < ready_.size()) {
+        const std::size_t count = std::min(ready_.size() - taken_, kBatchPoints - batch.size());
+        append(ready_, taken_, count, batch);
+        taken_ += count;
+      } else if (left_ == 0 && next_ < chunks_.size() && is_small(chunks_[next_])) {
+        decode_group();
+      } else if (!decode_some(batch)) {
         break;
-      } else if (groups_.takes(chunks_[next_])) {
-        next_ += groups_.decode(input_, std::span(chunks_).subspan(next_), next_, chunks_.size());
-        ready_ = groups_.points();
-      } else {
-        read_large(batch);
       }
     }
-    return !batch.quanta.empty();
+    return batch.size() > 0;
   }
 
   void rewind() override {
-    next_ = 0;
-    left_ = 0;
-    ready_ = {};
+    position_ = bytes_.begin + (scheme_.chunks == Scheme::Chunks::kNone ? 0 : kPointerBytes);
+    next_ = begun_ = left_ = 0;
+    ready_.clear();
+    taken_ = 0;
   }
 
   std::size_t pieces() const override { return piece_ends_.size(); }
 
   std::uint64_t points_of_piece(std::size_t piece) const override {
-    std::uint64_t points = 0;
-    for (const Chunk& chunk : chunks_of(piece)) points += chunk.points;
-    return points;
+    return points_of(chunks_of(piece));
   }
 
   void read_piece(std::size_t piece, PointBatch& batch, PieceBytes* bytes) override {
-    const std::span<const Chunk> chunks = chunks_of(piece);
-    laz::PointRoom room = room_in(batch, 0, points_of_piece(piece), scheme_);
-    for (const Chunk& chunk : chunks) {
-      try {
-        groups_.decode_alone(input_, chunk, room.first(chunk.points));
-      } catch (const laz::DamagedChunk& damage) {
-        const auto index = static_cast<std::uint64_t>(&chunk - chunks_.data());
-        laz::refuse_chunk(input_.name(), index, chunks_.size(), damage);
-      }
-      room = room.behind(chunk.points);
-    }
+    batch.clear();
+    decode(chunks_of(piece), batch);
     if (!bytes) return;
     *bytes = place_of_piece(piece);
     bytes->bytes = std::make_unique_for_overwrite<std::byte[]>(bytes->count);
@@ -123,13 +94,26 @@ class TabledReader final : public PointReader {
   }
 
  private:
+  static constexpr std::uint64_t kPointerBytes = 8;
+  static constexpr std::uint64_t kMostPointsOfChunk = 1 << 18;  // 3 MiB
+  static constexpr std::uint64_t kPointsPerThread = 1 << 17;    // two chunks of the usual size
+  static constexpr std::uint64_t kMostChunkBytes = std::uint64_t{4} << 20;
+  /// A decoder takes 1.6 KB for each extra byte.
+  static constexpr std::uint16_t kMostRecordBytes = 1 << 10;
+
+  /// Whether a chunk has few enough points to be decoded beside others, and so to be kept in memory
+  /// as a whole.
+  bool is_small(const Chunk& chunk) const {
+    return scheme_.record_bytes <= kMostRecordBytes && chunk.points <= kMostPointsOfChunk;
+  }
+
   /// Forms pieces of several chunks each, and of one each where it has a cube; none where a chunk
   /// is too large to be decoded as a whole.
   void find_pieces() {
     std::uint64_t points = 0, bytes = 0;
     for (std::size_t i = 0; i < chunks_.size(); ++i) {
       const std::uint64_t size = chunks_[i].end - chunks_[i].begin;
-      if (!groups_.takes(chunks_[i]) || size > kMostChunkBytes) {
+      if (!is_small(chunks_[i]) || size > kMostChunkBytes) {
         piece_ends_.clear();
         return;
       }
@@ -147,99 +131,111 @@ class TabledReader final : public PointReader {
     return std::span(chunks_).subspan(first, piece_ends_[piece] - first);
   }
 
-  static constexpr std::uint64_t kMostChunkBytes = std::uint64_t{4} << 20;
-  /// Appends points of a chunk that is too large for a group, as many as there is room for.
-  void read_large(PointBatch& batch) {
-    try {
-      const Chunk& chunk = chunks_[next_];
-      if (left_ == 0) {
-        if (!stream_) stream_ = laz::make_chunk_decoder(scheme_);
-        stream_->begin(input_, chunk);
-        left_ = chunk.points;
+  static std::uint64_t points_of(std::span<const Chunk> chunks) {
+    std::uint64_t points = 0;
+    for (const Chunk& chunk : chunks) points += chunk.points;
+    return points;
+  }
+
+  /// Makes room behind the points of the batch, as the scheme asks for it.
+  laz::PointRoom add_room(PointBatch& batch, std::size_t count) const {
+    const std::size_t first = batch.quanta.size(), end = first + count;
+    batch.quanta.resize(end);
+    batch.classes.resize(end);
+    if (scheme_.with_flags) batch.flags.resize(end);
+    if (scheme_.with_times) batch.times.resize(end);
+    return {batch.quanta.data() + first, batch.classes.data() + first,
+            scheme_.with_flags ? batch.flags.data() + first : nullptr,
+            scheme_.with_times ? batch.times.data() + first : nullptr, count};
+  }
+
+  /// Appends `count` points of a batch from number `first` on.
+  static void append(const PointBatch& from, std::size_t first, std::size_t count,
+                     PointBatch& out) {
+    const auto add = [&](const auto& values, auto& to) {
+      if (values.empty()) return;
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+      to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(count));
+    };
+    add(from.quanta, out.quanta);
+    add(from.classes, out.classes);
+    add(from.flags, out.flags);
+    add(from.times, out.times);
+  }
+
+  /// Decodes chunks of the table at the same time, on the threads of the caller's oneTBB arena, and
+  /// appends their points. Throws InputError for the first chunk that is damaged.
+  void decode(std::span<const Chunk> chunks, PointBatch& out) {
+    std::vector<laz::PointRoom> rooms{add_room(out, points_of(chunks))};
+    for (const Chunk& chunk : chunks) rooms.push_back(rooms.back().behind(chunk.points));
+    std::vector<std::optional<laz::DamagedChunk>> damages(chunks.size());
+    // In a stage of a pipeline.
+    for_each_nested(chunks.size(), [&](std::size_t i) {
+      try {
+        laz::ChunkDecoder& decoder = *decoders_.local();
+        decoder.begin(input_, chunks[i]);
+        decoder.decode(rooms[i].first(chunks[i].points));
+        decoder.finish();
+      } catch (const laz::DamagedChunk& damage) {
+        damages[i] = damage;
       }
-      const std::size_t before = batch.quanta.size();
-      const auto points = std::min<std::uint64_t>(kBatchPoints - before, left_);
-      stream_->decode(room_in(batch, before, points, scheme_));
+    });
+    for (std::size_t i = 0; i < chunks.size(); ++i) {
+      if (damages[i]) refuse_chunk(&chunks[i] - chunks_.data(), *damages[i]);
+    }
+  }
+
+  /// Decodes the next small chunks: as many as memory and threads suggest, at least one.
+  void decode_group() {
+    const int threads = std::max(1, tbb::this_task_arena::max_concurrency());
+    const std::uint64_t most = static_cast<std::uint64_t>(threads) * kPointsPerThread;
+    const std::size_t first = next_;
+    std::uint64_t points = 0;
+    do {
+      points += chunks_[next_++].points;
+    } while (next_ < chunks_.size() && is_small(chunks_[next_]) &&
+             points + chunks_[next_].points <= most);
+    ready_.clear();
+    taken_ = 0;
+    begun_ += points;
+    decode(std::span(chunks_).subspan(first, next_ - first), ready_);
+  }
+
+  /// Appends points of the current chunk, or else of the next one, as many as there is room for.
+  /// Returns false after the last chunk.
+  bool decode_some(PointBatch& batch) {
+    if (left_ == 0 && begun_ == bytes_.points) {
+      if (!has_table_) check_end();
+      return false;
+    }
+    try {
+      if (left_ == 0) begin_chunk(has_table_ ? chunks_[next_] : next_chunk());
+      const auto points = std::min<std::uint64_t>(kBatchPoints - batch.size(), left_);
+      stream_->decode(add_room(batch, points));
       left_ -= points;
-      if (left_ > 0) return;
-      stream_->finish();
+      if (left_ > 0) return true;
+      position_ = stream_->finish();
       ++next_;
     } catch (const laz::DamagedChunk& damage) {
-      laz::refuse_chunk(input_.name(), next_, chunks_.size(), damage);
+      refuse_chunk(next_, damage);
     }
+    return true;
   }
 
-  InputBuffer input_;
-  std::vector<Chunk> chunks_;
-  std::vector<Box> cubes_;
-  /// Index of the chunk after each piece; empty where only read() works.
-  std::vector<std::size_t> piece_ends_;
-  CloudInfo info_;
-  Scheme scheme_;
-  laz::ChunkGroups groups_;
-  std::span<const Quanta> ready_;  ///< points of the last decoded group that are not delivered yet
-  std::size_t next_ = 0;           ///< chunk to decode next
-  /// Decoder of large chunks; null before it is first needed.
-  std::unique_ptr<laz::ChunkDecoder> stream_;
-  std::uint64_t left_ = 0;  ///< points left in the large chunk that stream_ is decoding
-};
-
-/// Reads a file without a chunk table, where the position of a chunk is known only once the one
-/// before was decoded.
-class UntabledReader final : public PointReader {
- public:
-  UntabledReader(InputBuffer input, const Scheme& scheme, const laz::PointBytes& bytes,
-                 CloudInfo info)
-      : input_(std::move(input)),
-        scheme_(scheme),
-        bytes_(bytes),
-        info_(std::move(info)),
-        decoder_(laz::make_chunk_decoder(scheme)) {
-    rewind();
+  void begin_chunk(const Chunk& chunk) {
+    if (!stream_) stream_ = laz::make_chunk_decoder(scheme_);
+    stream_->begin(input_, chunk);
+    left_ = chunk.points;
+    begun_ += chunk.points;
   }
 
-  const CloudInfo& info() const override { return info_; }
-
-  bool read(PointBatch& batch) override {
-    batch.positions.clear();
-    const auto points = std::min<std::uint64_t>(kBatchPoints, bytes_.points - read_);
-    try {
-      for (laz::PointRoom room = room_in(batch, 0, points, scheme_); room.count > 0;) {
-        room = room.behind(read_chunk(room));
-      }
-    } catch (const laz::DamagedChunk& damage) {
-      laz::refuse_chunk(input_.name(), chunk_, 0, damage);
+  /// The next chunk of a file without a table.
+  Chunk next_chunk() const {
+    std::uint64_t points = bytes_.points - begun_;
+    if (scheme_.chunk_points && scheme_.chunks != Scheme::Chunks::kNone) {
+      points = std::min<std::uint64_t>(points, *scheme_.chunk_points);
     }
-    if (read_ == bytes_.points) check_end();
-    return points > 0;
-  }
-
-  void rewind() override {
-    position_ = bytes_.begin + (scheme_.chunks == Scheme::Chunks::kNone ? 0 : kPointerBytes);
-    chunk_ = read_ = left_ = 0;
-  }
-
- private:
-  static constexpr std::uint64_t kPointerBytes = 8;
-
-  /// Reads some points of the current chunk, or of the next one. Returns their number.
-  std::size_t read_chunk(laz::PointRoom room) {
-    if (left_ == 0) {
-      left_ = bytes_.points - read_;
-      if (scheme_.chunk_points && scheme_.chunks != Scheme::Chunks::kNone) {
-        left_ = std::min<std::uint64_t>(left_, *scheme_.chunk_points);
-      }
-      decoder_->begin(input_, {position_, bytes_.end, left_, false});
-    }
-    const auto points = std::min<std::uint64_t>(room.count, left_);
-    decoder_->decode(room.first(points));
-    read_ += points;
-    left_ -= points;
-    if (left_ == 0) {
-      position_ = decoder_->finish();
-      ++chunk_;
-    }
-    return points;
+    return {position_, bytes_.end, points, false};
   }
 
   /// Throws InputError where more points may follow: a whole record, unless it may be a chunk table
@@ -250,7 +246,7 @@ class UntabledReader final : public PointReader {
     std::array<std::byte, 8> head{};
     if (left >= head.size()) input_.read_at(position_, head);
     const bool is_table = load<std::uint32_t>(head.data()) == 0 &&
-                          load<std::uint32_t>(head.data() + 4) == chunk_ &&
+                          load<std::uint32_t>(head.data() + 4) == next_ &&
                           scheme_.chunks != Scheme::Chunks::kNone;
     if (is_table) return;
     refuse(input_.name(),
@@ -260,15 +256,33 @@ class UntabledReader final : public PointReader {
                "into a pipe: write the file again");
   }
 
+  [[noreturn]] void refuse_chunk(std::uint64_t index, const laz::DamagedChunk& damage) const {
+    refuse(input_.name(),
+           "chunk " + std::to_string(index + 1) +
+               (has_table_ ? " of " + std::to_string(chunks_.size()) : std::string()) + ": " +
+               damage.what +
+               "; expected compressed points as a LAZ writer leaves them. The file was cut or "
+               "damaged: copy it again");
+  }
+
   InputBuffer input_;
   Scheme scheme_;
   laz::PointBytes bytes_;
+  bool has_table_;
+  std::vector<Chunk> chunks_;  ///< those of the table
+  std::vector<Box> cubes_;
+  /// Index of the chunk after each piece; empty where only read() works.
+  std::vector<std::size_t> piece_ends_;
   CloudInfo info_;
-  std::unique_ptr<laz::ChunkDecoder> decoder_;
-  std::uint64_t position_ = 0;  ///< position of the chunk to read next
-  std::uint64_t chunk_ = 0;
-  std::uint64_t read_ = 0;  ///< number of points read
-  std::uint64_t left_ = 0;  ///< points left in the current chunk
+  tbb::enumerable_thread_specific<std::unique_ptr<laz::ChunkDecoder>> decoders_;
+  PointBatch ready_;         ///< points of the last decoded group
+  std::size_t taken_ = 0;    ///< number of them that read() has delivered
+  std::size_t next_ = 0;     ///< chunk to decode next
+  std::uint64_t begun_ = 0;  ///< points of the chunks that were begun
+  /// Decoder of large chunks and of files without a table; null before it is first needed.
+  std::unique_ptr<laz::ChunkDecoder> stream_;
+  std::uint64_t left_ = 0;      ///< points left in the chunk that stream_ is decoding
+  std::uint64_t position_ = 0;  ///< end of the last chunk that stream_ decoded
 };
 
 /// The cubes of the chunks of a COPC file; none for other files, and where they are damaged.
@@ -289,23 +303,24 @@ std::vector<Box> cubes_of(const InputBuffer& input, std::span<const std::byte> c
 std::unique_ptr<PointReader> read_laz_points(InputBuffer input, const Scheme& scheme,
                                              const laz::PointBytes& bytes,
                                              std::span<const std::byte> copc, CloudInfo info) {
+  std::optional<std::vector<Chunk>> chunks;
+  std::vector<Box> cubes;
   if (scheme.chunks != Scheme::Chunks::kNone) {
-    auto chunks = laz::read_chunk_table(input, scheme, bytes);
+    chunks = laz::read_chunk_table(input, scheme, bytes);
     if (chunks) {
-      std::vector<Box> cubes = cubes_of(input, copc, *chunks, info);
-      return std::make_unique<TabledReader>(std::move(input), scheme, std::move(*chunks),
-                                            std::move(cubes), std::move(info));
-    }
-    if (!scheme.chunk_points && bytes.points > 0) {
+      cubes = cubes_of(input, copc, *chunks, info);
+    } else if (!scheme.chunk_points && bytes.points > 0) {
       refuse(input.name(),
              "has no chunk table, and its chunks differ in size; expected a table. Its writer was "
              "interrupted: write the file again");
+    } else {
+      info.remarks.push_back(plain_note(input.name() + ": has no chunk table; its " +
+                                        std::to_string(bytes.points) +
+                                        " points are read one chunk after the other"));
     }
-    info.remarks.push_back(plain_note(input.name() + ": has no chunk table; its " +
-                                      std::to_string(bytes.points) +
-                                      " points are read one chunk after the other"));
   }
-  return std::make_unique<UntabledReader>(std::move(input), scheme, bytes, std::move(info));
+  return std::make_unique<LazReader>(std::move(input), scheme, bytes, std::move(chunks),
+                                     std::move(cubes), std::move(info));
 }
 
 }  // namespace clearway

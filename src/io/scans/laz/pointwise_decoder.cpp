@@ -2,8 +2,6 @@
 // them must be decoded.
 #include <optional>
 
-#include "io/files/bytes.hpp"
-#include "io/scans/las/las_header.hpp"
 #include "io/scans/laz/chunk_decoder.hpp"
 #include "io/scans/laz/items/gps_time11.hpp"
 #include "io/scans/laz/items/other_items.hpp"
@@ -21,31 +19,11 @@ class Item {
     if (version == 1) first_.emplace(arguments...);
     if (version == 2) second_.emplace(arguments...);
   }
-  void begin() {
-    if (first_) first_->begin();
-    if (second_) second_->begin();
-  }
-  ArithmeticDecoder skip(ArithmeticDecoder decoder) {
-    if (second_) return second_->skip(decoder);
-    return first_ ? first_->skip(decoder) : decoder;
-  }
-
- private:
-  std::optional<Version1> first_;
-  std::optional<Version2> second_;
-};
-
-/// The item GPSTIME11 in any version, or none.
-class GpsTimeItem {
- public:
-  explicit GpsTimeItem(unsigned version) {
-    if (version == 1) first_.emplace();
-    if (version == 2) second_.emplace();
-  }
-  /// bytes: those of the item in the first record.
-  void begin(const std::byte* bytes) {
-    if (first_) first_->begin(load<double>(bytes));
-    if (second_) second_->begin(load<double>(bytes));
+  /// arguments: what the item needs of the first record.
+  template <typename... Arguments>
+  void begin(Arguments... arguments) {
+    if (first_) first_->begin(arguments...);
+    if (second_) second_->begin(arguments...);
   }
   ArithmeticDecoder next(ArithmeticDecoder decoder) {
     if (second_) return second_->next(decoder);
@@ -54,8 +32,8 @@ class GpsTimeItem {
   double time() const { return second_ ? second_->time() : first_->time(); }
 
  private:
-  std::optional<GpsTimeVersion1> first_;
-  std::optional<GpsTimeVersion2> second_;
+  std::optional<Version1> first_;
+  std::optional<Version2> second_;
 };
 
 /// All items after POINT10.
@@ -67,15 +45,14 @@ class OtherItems {
         wave_packet_(scheme.wave_packet_version),
         bytes_(scheme.bytes_version, scheme.bytes) {}
 
-  /// bytes: those of the items in the first record.
-  void begin(const std::byte* bytes) {
-    gps_time_.begin(bytes);
+  void begin(double time) {
+    gps_time_.begin(time);
     rgb_.begin();
     wave_packet_.begin();
     bytes_.begin();
   }
-  ArithmeticDecoder skip(ArithmeticDecoder decoder) {
-    return bytes_.skip(wave_packet_.skip(rgb_.skip(gps_time_.next(decoder))));
+  ArithmeticDecoder next(ArithmeticDecoder decoder) {
+    return bytes_.next(wave_packet_.next(rgb_.next(gps_time_.next(decoder))));
   }
   double time() const { return gps_time_.time(); }  ///< GPS time of the last point
   static std::size_t most_bytes(const Scheme& scheme) {
@@ -83,7 +60,7 @@ class OtherItems {
   }
 
  private:
-  GpsTimeItem gps_time_;
+  Item<GpsTimeVersion1, GpsTimeVersion2> gps_time_;
   Item<RgbVersion1, RgbVersion2> rgb_;
   Item<WavePacket, WavePacket> wave_packet_;
   Item<BytesVersion1, BytesVersion2> bytes_;
@@ -95,6 +72,7 @@ class PointwiseDecoder final : public ChunkDecoder {
   explicit PointwiseDecoder(const Scheme& scheme)
       : record_bytes_(scheme.record_bytes),
         has_others_(scheme.record_bytes > kPointBytes),
+        has_times_(scheme.has_times()),
         most_bytes_(kMostBytesPoint10 + OtherItems::most_bytes(scheme) + kPointBytes),
         others_(scheme) {}
 
@@ -102,33 +80,12 @@ class PointwiseDecoder final : public ChunkDecoder {
     const std::byte* cursor =
         window_.open(input, chunk.begin, chunk.end, static_cast<std::ptrdiff_t>(most_bytes_));
     const auto record = window_.take(cursor, record_bytes_);
-    first_ = load<Quanta>(record.data());
-    first_class_ = las_class_field(0).of(record.data());
-    first_flags_ = las_flags_of(record.data(), 0);
+    take_first(record.data(), has_times_ ? 1 : 0);
     point_.begin(record.data());
-    others_.begin(record.data() + kPointBytes);
-    is_first_ = true;
+    others_.begin(time_);
     ends_there_ = chunk.ends_there;
     end_ = chunk.end;
     decoder_ = ArithmeticDecoder(window_.ahead(cursor));
-  }
-
-  void decode(PointRoom points) override {
-    if (is_first_ && points.count > 0) {
-      points.quanta[0] = first_;
-      points.classes[0] = first_class_;
-      if (points.flags) points.flags[0] = first_flags_;
-      if (points.times) points.times[0] = others_.time();
-      points = points.behind(1);
-      is_first_ = false;
-    }
-    if (has_others_) {
-      run<true>(points);
-    } else {
-      run<false>(points);
-    }
-    window_.ahead(decoder_.cursor());
-    if (decoder_.damaged()) throw DamagedChunk{"holds bits that no encoder writes"};
   }
 
   std::uint64_t finish() override {
@@ -141,6 +98,12 @@ class PointwiseDecoder final : public ChunkDecoder {
  private:
   static constexpr std::size_t kPointBytes = 20;
 
+  bool decode_others(PointRoom points) override {
+    has_others_ ? run<true>(points) : run<false>(points);
+    window_.ahead(decoder_.cursor());
+    return !decoder_.damaged();
+  }
+
   template <bool kHasOthers>
   void run(PointRoom points) {
     ArithmeticDecoder decoder = decoder_;
@@ -150,7 +113,7 @@ class PointwiseDecoder final : public ChunkDecoder {
       points.classes[i] = point_.point_class();
       if (points.flags) points.flags[i] = point_.flags();
       if constexpr (kHasOthers) {
-        decoder = others_.skip(decoder);
+        decoder = others_.next(decoder);
         if (points.times) points.times[i] = others_.time();
       }
     }
@@ -158,15 +121,12 @@ class PointwiseDecoder final : public ChunkDecoder {
   }
 
   std::size_t record_bytes_;
-  bool has_others_;
+  bool has_others_, has_times_;
   std::size_t most_bytes_;
   ByteWindow window_;
   ArithmeticDecoder decoder_;
   Point point_;
   OtherItems others_;
-  Quanta first_{};
-  std::uint8_t first_class_ = 0, first_flags_ = 0;
-  bool is_first_ = false;
   bool ends_there_ = true;
   std::uint64_t end_ = 0;
 };

@@ -2,7 +2,7 @@
 
 namespace clearway::laz {
 
-ArithmeticDecoder RgbVersion2::skip(ArithmeticDecoder decoder) {
+ArithmeticDecoder RgbVersion2::next(ArithmeticDecoder decoder) {
   constexpr unsigned kOthers = 64;  // bit of `changed`: green and blue differ from red
   const unsigned changed = decoder.symbol(models_.changed);
   // Each bit stands for a byte, in the order of the record; the low bytes of green and blue come
@@ -14,7 +14,7 @@ ArithmeticDecoder RgbVersion2::skip(ArithmeticDecoder decoder) {
   return decoder;
 }
 
-ArithmeticDecoder RgbVersion1::skip(ArithmeticDecoder decoder) {
+ArithmeticDecoder RgbVersion1::next(ArithmeticDecoder decoder) {
   const unsigned changed = decoder.symbol(models_.changed);
   for (unsigned byte = 0; byte < 6; ++byte) {
     if ((changed >> byte & 1u) != 0) models_.bytes.decode(decoder, 0, byte);
@@ -22,7 +22,7 @@ ArithmeticDecoder RgbVersion1::skip(ArithmeticDecoder decoder) {
   return decoder;
 }
 
-ArithmeticDecoder WavePacket::skip(ArithmeticDecoder decoder) {
+ArithmeticDecoder WavePacket::next(ArithmeticDecoder decoder) {
   decoder.symbol(models_.descriptor);
   models_.last_kind = decoder.symbol(models_.offset_kind[models_.last_kind]);
   if (models_.last_kind == 2) {
@@ -40,7 +40,7 @@ void BytesVersion2::begin() {
   for (auto& model : models_) renew(model);
 }
 
-ArithmeticDecoder BytesVersion2::skip(ArithmeticDecoder decoder) {
+ArithmeticDecoder BytesVersion2::next(ArithmeticDecoder decoder) {
   for (auto& model : models_) decoder.symbol(model);
   return decoder;
 }
@@ -50,7 +50,7 @@ void BytesVersion1::begin() {
   renew(corrector_);
 }
 
-ArithmeticDecoder BytesVersion1::skip(ArithmeticDecoder decoder) {
+ArithmeticDecoder BytesVersion1::next(ArithmeticDecoder decoder) {
   unsigned width = 0;
   for (auto& model : widths_) corrector_.decode(decoder, model, width);
   return decoder;

@@ -19,7 +19,7 @@ constexpr std::size_t kMostBytesByte = 6;  ///< per byte
 class RgbVersion2 {
  public:
   void begin() { renew(models_); }
-  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+  ArithmeticDecoder next(ArithmeticDecoder decoder);
 
  private:
   struct Models {
@@ -33,7 +33,7 @@ class RgbVersion2 {
 class RgbVersion1 {
  public:
   void begin() { renew(models_); }
-  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+  ArithmeticDecoder next(ArithmeticDecoder decoder);
 
  private:
   struct Models {
@@ -47,7 +47,7 @@ class RgbVersion1 {
 class WavePacket {
  public:
   void begin() { renew(models_); }
-  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+  ArithmeticDecoder next(ArithmeticDecoder decoder);
 
  private:
   struct Models {
@@ -65,7 +65,7 @@ class BytesVersion2 {
  public:
   explicit BytesVersion2(std::size_t count) : models_(count, fresh<SymbolModel<256>>()) {}
   void begin();
-  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+  ArithmeticDecoder next(ArithmeticDecoder decoder);
 
  private:
   std::vector<SymbolModel<256>> models_;
@@ -77,7 +77,7 @@ class BytesVersion1 {
   explicit BytesVersion1(std::size_t count)
       : widths_(count, fresh<SymbolModel<9>>()), corrector_(fresh<CorrectorModel<8>>()) {}
   void begin();
-  ArithmeticDecoder skip(ArithmeticDecoder decoder);
+  ArithmeticDecoder next(ArithmeticDecoder decoder);
 
  private:
   std::vector<SymbolModel<9>> widths_;
