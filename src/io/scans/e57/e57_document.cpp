@@ -6,11 +6,14 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <pugixml.hpp>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "io/files/input_error.hpp"
+#include "io/files/xml_text.hpp"
 #include "io/paths/pose_input.hpp"
 
 namespace clearway {
@@ -22,81 +25,90 @@ bool is_utf8_name(std::string_view encoding) {
                     [](char a, char b) { return a == b || (a >= 'A' && a <= 'Z' && a + 32 == b); });
 }
 
-}  // namespace
-
-E57Xml::E57Xml(E57Container& file)
-    : XmlText(file.pages.name(), "the XML section",
-              [&pages = file.pages, start = file.xml_start](std::uint64_t offset) {
-                return "byte " + std::to_string(pages.physical(start + offset));
-              }) {
-  const E57Pages& pages = file.pages;
-  if (file.xml_bytes > kMostBytes) {
-    refuse_byte(pages.name(), 32,
-                "an XML section of " + std::to_string(file.xml_bytes) +
-                    " bytes; expected at most " + std::to_string(kMostBytes));
+/// The XML section of an E57 file, which names places by their byte in the file.
+class E57Xml : public XmlText {
+ public:
+  explicit E57Xml(E57Container& file)
+      : XmlText(file.pages.name(), "the XML section",
+                [&pages = file.pages, start = file.xml_start](std::uint64_t offset) {
+                  return "byte " + std::to_string(pages.physical(start + offset));
+                }) {
+    constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
+    constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 21;
+    const std::uint64_t most = std::min(kMostBytes, file.pages.size() - file.xml_start);
+    if (file.xml_bytes > most) {
+      refuse_byte(name(), 32,
+                  "an XML section of " + std::to_string(file.xml_bytes) + " bytes; expected " +
+                      (file.xml_bytes > kMostBytes ? "at most " + std::to_string(kMostBytes)
+                                                   : "it to end before the file"));
+    }
+    std::vector<char> bytes(file.xml_bytes);
+    file.pages.read(file.xml_start, std::as_writable_bytes(std::span(bytes)), "the XML section");
+    parse(std::move(bytes), kMostMarkup, "e57Root");
+    check_encoding();
+    if (type_of(root()) != "Structure") refuse_at(root(), "expected the type Structure");
   }
-  if (file.xml_bytes > pages.size() - file.xml_start) {
-    refuse_byte(pages.name(), 32,
-                "an XML section of " + std::to_string(file.xml_bytes) +
-                    " bytes; expected it to end before the file");
+
+  /// The child of that name, or an empty node. Throws for a second child of the name and for
+  /// another E57 type.
+  pugi::xml_node find(pugi::xml_node parent, const char* name, std::string_view type) const {
+    const pugi::xml_node node = parent.child(name);
+    if (!node) return node;
+    if (const pugi::xml_node second = node.next_sibling(name)) {
+      refuse_at(second, "stands twice; expected it once in its parent");
+    }
+    if (type_of(node) != type) {
+      refuse_at(node, "has the type " + excerpt(type_of(node)) + "; expected " + std::string(type));
+    }
+    return node;
   }
-  std::vector<char> bytes(file.xml_bytes);
-  file.pages.read(file.xml_start, std::as_writable_bytes(std::span(bytes)), "the XML section");
-  parse(std::move(bytes), kMostMarkup, "e57Root");
-  check_encoding();
-  if (type_of(root()) != "Structure") refuse_at(root(), "expected the type Structure");
-}
 
-void E57Xml::check_encoding() const {
-  const pugi::xml_node declaration = first_node();
-  if (declaration.type() != pugi::node_declaration) return;
-  const pugi::xml_attribute encoding = declaration.attribute("encoding");
-  if (!encoding || is_utf8_name(encoding.value())) return;
-  refuse_offset(
-      0, "the XML section is in the encoding " + excerpt(encoding.value()) + "; expected UTF-8");
-}
-
-std::string_view E57Xml::type_of(pugi::xml_node node) const {
-  return attribute(node, "type").value_or("");
-}
-
-pugi::xml_node E57Xml::find(pugi::xml_node parent, const char* name, std::string_view type) const {
-  const pugi::xml_node node = parent.child(name);
-  if (!node) return node;
-  if (const pugi::xml_node second = node.next_sibling(name)) {
-    refuse_at(second, "stands twice; expected it once in its parent");
+  std::string_view type_of(pugi::xml_node node) const {
+    return attribute(node, "type").value_or("");
   }
-  if (type_of(node) != type) {
-    refuse_at(node, "has the type " + excerpt(type_of(node)) + "; expected " + std::string(type));
+
+  /// The number in an element of type Float or Integer; 0 where the element is empty, as E57
+  /// defines.
+  double number(pugi::xml_node node) const {
+    const std::string value = text(node);
+    const std::string_view digits = without_space_around(value);
+    if (digits.empty()) return 0;
+    const auto result = whole_number_of<double>(digits);
+    if (!result) refuse_at(node, "is " + excerpt(digits) + "; expected a number");
+    return *result;
   }
-  return node;
-}
 
-pugi::xml_node E57Xml::get(pugi::xml_node parent, const char* name, std::string_view type) const {
-  const pugi::xml_node node = find(parent, name, type);
-  if (!node) refuse_at(parent, "has no " + std::string(name) + "; expected one");
-  return node;
-}
+  /// The numbers in a structure's children of type Float, all of which must exist.
+  template <std::size_t count>
+  std::array<double, count> numbers(pugi::xml_node structure,
+                                    const std::array<const char*, count>& names) const {
+    std::array<double, count> out{};
+    for (std::size_t i = 0; i < count; ++i) out[i] = number(get(structure, names[i], "Float"));
+    return out;
+  }
 
-double E57Xml::number(pugi::xml_node node) const {
-  const std::string value = text(node);
-  const std::string_view digits = without_space_around(value);
-  if (digits.empty()) return 0;
-  const auto result = whole_number_of<double>(digits);
-  if (!result) refuse_at(node, "is " + excerpt(digits) + "; expected a number");
-  return *result;
-}
+  /// The child of that name. Throws as find() does, and for a missing child.
+  pugi::xml_node get(pugi::xml_node parent, const char* name, std::string_view type) const {
+    const pugi::xml_node node = find(parent, name, type);
+    if (!node) refuse_at(parent, "has no " + std::string(name) + "; expected one");
+    return node;
+  }
 
-namespace {
+ private:
+  void check_encoding() const {
+    const pugi::xml_attribute encoding = first_node().attribute("encoding");
+    const bool is_declaration = first_node().type() == pugi::node_declaration;
+    if (!is_declaration || !encoding || is_utf8_name(encoding.value())) return;
+    refuse_offset(
+        0, "the XML section is in the encoding " + excerpt(encoding.value()) + "; expected UTF-8");
+  }
+};
 
 /// Names of the fields, in the order of E57Place.
 constexpr std::string_view kPlaceNames[] = {
     "cartesianX",     "cartesianY",       "cartesianZ",         "cartesianInvalidState",
     "sphericalRange", "sphericalAzimuth", "sphericalElevation", "sphericalInvalidState"};
 static_assert(std::size(kPlaceNames) == kE57Places);
-
-/// Greatest number of bytestreams; a data packet has no room for the lengths of more.
-constexpr std::size_t kMostStreams = (65536 - 6) / 2;
 
 E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
   using Limits = std::numeric_limits<std::int64_t>;
@@ -123,17 +135,9 @@ E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
 
 E57Field float_field(const E57Xml& xml, pugi::xml_node node) {
   const std::string_view precision = xml.attribute(node, "precision").value_or("double");
-  E57Field field;
-  if (precision == "single") {
-    field.kind = E57Field::Kind::kFloat32;
-    field.bits = 32;
-  } else if (precision == "double") {
-    field.kind = E57Field::Kind::kFloat64;
-    field.bits = 64;
-  } else {
-    xml.refuse_at(node, "has another precision; expected single or double");
-  }
-  return field;
+  if (precision == "single") return {.kind = E57Field::Kind::kFloat32, .bits = 32};
+  if (precision == "double") return {.kind = E57Field::Kind::kFloat64, .bits = 64};
+  xml.refuse_at(node, "has another precision; expected single or double");
 }
 
 E57Field field_of(const E57Xml& xml, pugi::xml_node node) {
@@ -170,8 +174,7 @@ pugi::xml_node next_behind(pugi::xml_node node, pugi::xml_node top) {
 /// Throws InputError where a scan has some but not all of three fields.
 void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& scan,
                     E57Place first, E57Place second, E57Place third) {
-  const int found = int{scan.has(first)} + int{scan.has(second)} + int{scan.has(third)};
-  if (found == 0 || found == 3) return;
+  if (!scan.has(first) && !scan.has(second) && !scan.has(third)) return;
   for (const E57Place place : {first, second, third}) {
     if (scan.has(place)) continue;
     xml.refuse_at(prototype, "has no " + std::string(kPlaceNames[place]) + " beside " +
@@ -205,10 +208,6 @@ void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan)
       continue;
     }
     if (is_element && !is_branch(xml.type_of(node))) {
-      if (scan.fields.size() == kMostStreams) {
-        xml.refuse_at(node, "is one field too many; expected at most " +
-                                std::to_string(kMostStreams) + " in a point");
-      }
       scan.fields.push_back(field_of(xml, node));
       if (node.parent() == prototype) note_place(xml, node, scan);
     }
@@ -219,27 +218,16 @@ void read_e57_prototype(const E57Xml& xml, pugi::xml_node points, E57Scan& scan)
   check_codecs(xml, points);
 }
 
-/// The numbers of a structure's children, all of which must exist.
-template <std::size_t count>
-std::array<double, count> numbers_of(const E57Xml& xml, pugi::xml_node structure,
-                                     const std::array<const char*, count>& names) {
-  std::array<double, count> numbers{};
-  for (std::size_t i = 0; i < count; ++i) {
-    numbers[i] = xml.number(xml.get(structure, names[i], "Float"));
-  }
-  return numbers;
-}
-
 std::optional<Pose> read_pose(const E57Xml& xml, pugi::xml_node scan) {
   const pugi::xml_node pose = xml.find(scan, "pose", "Structure");
   if (!pose) return std::nullopt;
   std::array<double, 4> quaternion{0, 0, 0, 1};
   std::array<double, 3> translation{};
   if (const auto node = xml.find(pose, "rotation", "Structure")) {
-    quaternion = numbers_of<4>(xml, node, {"x", "y", "z", "w"});
+    quaternion = xml.numbers<4>(node, {"x", "y", "z", "w"});
   }
   if (const auto node = xml.find(pose, "translation", "Structure")) {
-    translation = numbers_of<3>(xml, node, {"x", "y", "z"});
+    translation = xml.numbers<3>(node, {"x", "y", "z"});
   }
   Pose result;
   const Objection objection = pose_of_quaternion(translation, quaternion, result);

@@ -4,14 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <pugixml.hpp>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/pose.hpp"
-#include "io/files/xml_text.hpp"
 #include "io/scans/e57/e57_file.hpp"
 
 namespace clearway {
@@ -78,33 +75,7 @@ struct E57Document {
   std::string crs;  ///< content of e57Root/coordinateMetadata
 };
 
-struct E57Container;
-
 /// Parses the XML section. Throws InputError.
 E57Document read_e57_document(E57Container& file);
-
-/// The XML section of an E57 file, which names places by their byte in the file.
-class E57Xml : public XmlText {
- public:
-  static constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
-  static constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 21;
-
-  explicit E57Xml(E57Container& file);
-
-  /// The child of that name, or an empty node. Throws for a second child of the name and for
-  /// another E57 type.
-  pugi::xml_node find(pugi::xml_node parent, const char* name, std::string_view type) const;
-  /// The child of that name. Throws for a missing or second child of the name and for another E57
-  /// type.
-  pugi::xml_node get(pugi::xml_node parent, const char* name, std::string_view type) const;
-  std::string_view type_of(pugi::xml_node node) const;
-
-  /// The number in an element of type Float or Integer; 0 where the element is empty, as E57
-  /// defines.
-  double number(pugi::xml_node node) const;
-
- private:
-  void check_encoding() const;
-};
 
 }  // namespace clearway

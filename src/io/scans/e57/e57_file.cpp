@@ -17,29 +17,18 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint32_t kReflectedPolynomial = 0x82F63B78;
-using Tables = std::array<std::array<std::uint32_t, 256>, 8>;
-
-/// tables[k][b]: what byte b adds to the remainder when k more bytes follow it.
-constexpr Tables make_tables() {
-  Tables tables{};
+/// What each byte adds to a remainder.
+constexpr std::array<std::uint32_t, 256> kTable = [] {
+  constexpr std::uint32_t kReflectedPolynomial = 0x82F63B78;
+  std::array<std::uint32_t, 256> table{};
   for (std::uint32_t b = 0; b < 256; ++b) {
-    std::uint32_t remainder = b;
+    table[b] = b;
     for (int bit = 0; bit < 8; ++bit) {
-      remainder = (remainder >> 1) ^ ((remainder & 1) != 0 ? kReflectedPolynomial : 0);
-    }
-    tables[0][b] = remainder;
-  }
-  for (std::size_t k = 1; k < tables.size(); ++k) {
-    for (std::size_t b = 0; b < 256; ++b) {
-      const std::uint32_t before = tables[k - 1][b];
-      tables[k][b] = (before >> 8) ^ tables[0][before & 0xFF];
+      table[b] = (table[b] >> 1) ^ ((table[b] & 1) != 0 ? kReflectedPolynomial : 0);
     }
   }
-  return tables;
-}
-
-constexpr Tables kTables = make_tables();
+  return table;
+}();
 
 #if defined(__x86_64__)
 __attribute__((target("sse4.2"))) std::uint32_t crc32c_by_instruction(
@@ -59,15 +48,9 @@ __attribute__((target("sse4.2"))) std::uint32_t crc32c_by_instruction(
 
 std::uint32_t crc32c_by_table(std::span<const std::byte> bytes) {
   std::uint32_t remainder = 0xFFFFFFFF;
-  const std::byte* at = bytes.data();
-  std::size_t left = bytes.size();
-  for (; left >= 8; left -= 8, at += 8) {
-    const std::uint64_t word = load<std::uint64_t>(at) ^ remainder;
-    remainder = 0;
-    for (std::size_t k = 0; k < 8; ++k) remainder ^= kTables[7 - k][(word >> (8 * k)) & 0xFF];
-  }
-  for (; left > 0; --left, ++at) {
-    remainder = (remainder >> 8) ^ kTables[0][(remainder ^ load<std::uint8_t>(at)) & 0xFF];
+  for (const std::byte byte : bytes) {
+    remainder =
+        (remainder >> 8) ^ kTable[(remainder ^ std::to_integer<std::uint32_t>(byte)) & 0xFF];
   }
   return ~remainder;
 }
@@ -148,54 +131,33 @@ constexpr std::uint64_t kLeastPage = 128;
 constexpr std::uint64_t kLargestPage = 65536;
 static_assert(kLargestPage <= E57Pages::kWindowBytes);
 
-using Header = std::array<std::byte, kE57HeaderBytes>;
-
-Header read_header(const File& file) {
-  const std::uint64_t size = file.size_bytes();
-  if (size < kE57HeaderBytes) {
-    refuse(file.name(), "ends at byte " + std::to_string(size) + "; expected an E57 header of " +
-                            std::to_string(kE57HeaderBytes) + " bytes");
-  }
-  Header header;
-  file.read_at(0, header);
-  return header;
-}
-
-void check_kind(const std::string& name, const Header& header) {
+/// Throws InputError unless the header of a file is one of E57 1.0 and fits the file's size.
+void check_header(const File& file, const std::byte* header) {
   constexpr std::string_view kSignature = "ASTM-E57";
-  if (std::memcmp(header.data(), kSignature.data(), kSignature.size()) != 0) {
+  const std::string& name = file.name();
+  const auto number = [&](std::size_t at) { return load<std::uint64_t>(header + at); };
+  if (std::memcmp(header, kSignature.data(), kSignature.size()) != 0) {
     refuse_byte(name, 0, "expected ASTM-E57, the first bytes of an E57 file");
   }
-  const auto major = load<std::uint32_t>(header.data() + 8);
-  const auto minor = load<std::uint32_t>(header.data() + 12);
+  const auto major = load<std::uint32_t>(header + 8), minor = load<std::uint32_t>(header + 12);
   if (major != 1 || minor != 0) {
     refuse_byte(name, 8,
                 "E57 version " + std::to_string(major) + "." + std::to_string(minor) +
                     "; expected 1.0. Export the scan as E57 1.0, LAS or PLY");
   }
-}
-
-std::size_t page_bytes_of(const std::string& name, const Header& header) {
-  const auto page = load<std::uint64_t>(header.data() + 40);
+  const std::uint64_t page = number(40), declared = number(16), size = file.size_bytes();
   if (!std::has_single_bit(page) || page < kLeastPage || page > kLargestPage) {
     refuse_byte(name, 40,
                 "pages of " + std::to_string(page) +
                     " bytes; expected 1024, or another power of two from " +
                     std::to_string(kLeastPage) + " to " + std::to_string(kLargestPage));
   }
-  return page;
-}
-
-void check_size(const File& file, const Header& header, std::size_t page) {
-  const auto declared = load<std::uint64_t>(header.data() + 16);
-  const std::uint64_t size = file.size_bytes();
   if (size != declared) {
-    refuse(file.name(), "has " + std::to_string(size) + " bytes; expected " +
-                            std::to_string(declared) +
-                            " as its header says. Copy or export the file again");
+    refuse(name, "has " + std::to_string(size) + " bytes; expected " + std::to_string(declared) +
+                     " as its header says. Copy or export the file again");
   }
   if (size % page != 0) {
-    refuse_byte(file.name(), 16,
+    refuse_byte(name, 16,
                 "a file of " + std::to_string(size) + " bytes; expected whole pages of " +
                     std::to_string(page) + " bytes");
   }
@@ -204,10 +166,15 @@ void check_size(const File& file, const Header& header, std::size_t page) {
 }  // namespace
 
 E57Container open_e57(File file) {
-  Header header = read_header(file);
-  check_kind(file.name(), header);
-  const std::size_t page = page_bytes_of(file.name(), header);
-  check_size(file, header, page);
+  std::array<std::byte, kE57HeaderBytes> header;
+  if (file.size_bytes() < header.size()) {
+    refuse(file.name(), "ends at byte " + std::to_string(file.size_bytes()) +
+                            "; expected an E57 header of " + std::to_string(header.size()) +
+                            " bytes");
+  }
+  file.read_at(0, header);
+  check_header(file, header.data());
+  const auto page = load<std::uint64_t>(header.data() + 40);
   E57Pages pages(std::move(file), page);
   pages.read(0, header, "the header");  // read again, verified by the page's checksum
   const auto xml_offset = load<std::uint64_t>(header.data() + 24);

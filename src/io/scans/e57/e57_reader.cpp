@@ -25,79 +25,76 @@ namespace {
 /// Collects remarks on the scans of a file. Memory does not grow with their number.
 class E57Remarks {
  public:
-  /// Adds a scan that was read completely. file: the name with which each text begins.
-  void add(const std::string& file, const E57Scan& scan, const E57Findings& findings);
+  /// file: the name with which each text begins.
+  explicit E57Remarks(std::string file) : file_(std::move(file)) {}
+
+  /// Adds a scan that was read completely.
+  void add(const E57Scan& scan, const E57Findings& findings) {
+    ++scans_;
+    records_ += scan.records;
+    absent_ += findings.absent;
+    if (scan.records == 0) ++empty_;
+    if (scan.pose && scan.records > 0) ++posed_;
+    if (scan.is_cartesian()) {
+      const auto scale = [&](E57Place place) { return scan.fields[scan.places[place]].scale; };
+      cut_off_.add(scan.name(), findings.cut_off, {scale(kE57X), scale(kE57Y), scale(kE57Z)});
+    }
+    // By the standard, bounds are those of the points before the pose is applied; some writers give
+    // those after it.
+    if (!scan.bounds) return;
+    const bool by_pose = scan.pose && findings.posed.beyond < findings.own.beyond;
+    bounds_.add(file_ + ": " + scan.name(), *scan.bounds, by_pose ? findings.posed : findings.own);
+  }
   /// Adds a scan that has no coordinates and was not read.
   void add_without_coordinates() { ++scans_, ++without_coordinates_; }
 
-  /// The remarks. file: the name with which each text begins.
-  std::vector<Message> messages(const std::string& file) const;
+  std::vector<Message> messages() const {
+    std::vector<Message> all;
+    using Number = std::pair<const char*, std::uint64_t>;
+    const auto note = [&](const std::string& text, const Number& first, const Number& second) {
+      MessageNumbers numbers;
+      for (const auto& [name, number] : {first, second}) {
+        numbers.emplace_back(name, static_cast<double>(number));
+      }
+      all.push_back(plain_note(file_ + ": " + text, std::move(numbers)));
+    };
+    const auto scans = [](std::uint64_t count) { return counted(count, "scan"); };
+    const Number total{"scans", scans_};
+    if (scans_ > 1 || posed_ > 0) {
+      note(scans(scans_) + (posed_ == 0   ? "; none has a pose"
+                            : posed_ == 1 ? "; 1 pose is applied"
+                                          : "; " + format_count(posed_) + " poses are applied"),
+           total, {"poses", posed_});
+    }
+    if (empty_ > 0) {
+      note(scans(empty_) + " without points, of " + format_count(scans_), {"empty_scans", empty_},
+           total);
+    }
+    if (without_coordinates_ > 0) {
+      note(scans(without_coordinates_) + " without coordinates, of " + format_count(scans_) +
+               "; their records are not counted",
+           {"scans_without_coordinates", without_coordinates_}, total);
+    }
+    if (absent_ > 0) {
+      note(format_count(absent_) + " of " + format_count(records_) + " records have no valid point",
+           {"absent", absent_}, {"records", records_});
+    }
+    const std::vector<Message> bounds = bounds_.messages();
+    all.insert(all.end(), bounds.begin(), bounds.end());
+    if (auto cut_off = cut_off_.message()) {
+      cut_off->text.insert(0, file_ + ": ");
+      all.push_back(std::move(*cut_off));
+    }
+    return all;
+  }
 
  private:
+  std::string file_;
   std::uint64_t scans_ = 0, posed_ = 0, empty_ = 0, without_coordinates_ = 0;
   std::uint64_t records_ = 0, absent_ = 0;
   BoundsWarnings bounds_;
   CutOffWarning cut_off_;
 };
-
-Message note(std::string text, std::vector<std::pair<std::string, double>> numbers) {
-  return plain_note(std::move(text), std::move(numbers));
-}
-
-std::string scans(std::uint64_t count) {
-  return format_count(count) + (count == 1 ? " scan" : " scans");
-}
-
-void E57Remarks::add(const std::string& file, const E57Scan& scan, const E57Findings& findings) {
-  ++scans_;
-  records_ += scan.records;
-  absent_ += findings.absent;
-  if (scan.records == 0) ++empty_;
-  if (scan.pose && scan.records > 0) ++posed_;
-  if (scan.is_cartesian()) {
-    const auto scale = [&](E57Place place) { return scan.fields[scan.places[place]].scale; };
-    cut_off_.add(scan.name(), findings.cut_off, {scale(kE57X), scale(kE57Y), scale(kE57Z)});
-  }
-  // By the standard, bounds are those of the points before the pose is applied; some writers give
-  // those after it.
-  if (!scan.bounds) return;
-  const bool by_pose = scan.pose && findings.posed.beyond < findings.own.beyond;
-  bounds_.add(file + ": " + scan.name(), *scan.bounds, by_pose ? findings.posed : findings.own);
-}
-
-std::vector<Message> E57Remarks::messages(const std::string& file) const {
-  std::vector<Message> all;
-  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
-  if (scans_ > 1 || posed_ > 0) {
-    const std::string poses = posed_ == 0   ? "; none has a pose"
-                              : posed_ == 1 ? "; 1 pose is applied"
-                                            : "; " + format_count(posed_) + " poses are applied";
-    all.push_back(note(file + ": " + scans(scans_) + poses,
-                       {{"scans", number(scans_)}, {"poses", number(posed_)}}));
-  }
-  if (empty_ > 0) {
-    all.push_back(note(file + ": " + scans(empty_) + " without points, of " + format_count(scans_),
-                       {{"empty_scans", number(empty_)}, {"scans", number(scans_)}}));
-  }
-  if (without_coordinates_ > 0) {
-    all.push_back(note(
-        file + ": " + scans(without_coordinates_) + " without coordinates, of " +
-            format_count(scans_) + "; their records are not counted",
-        {{"scans_without_coordinates", number(without_coordinates_)}, {"scans", number(scans_)}}));
-  }
-  if (absent_ > 0) {
-    all.push_back(note(file + ": " + format_count(absent_) + " of " + format_count(records_) +
-                           " records have no valid point",
-                       {{"absent", number(absent_)}, {"records", number(records_)}}));
-  }
-  const std::vector<Message> bounds = bounds_.messages();
-  all.insert(all.end(), bounds.begin(), bounds.end());
-  if (auto cut_off = cut_off_.message()) {
-    cut_off->text.insert(0, file + ": ");
-    all.push_back(std::move(*cut_off));
-  }
-  return all;
-}
 
 /// Throws InputError where scans share packets, with which a small file could hold any number of
 /// points.
@@ -145,10 +142,8 @@ Message foot_warning(const std::string& name) {
 
 class E57Reader final : public PointReader {
  public:
-  explicit E57Reader(E57Container file) : pages_(std::move(file.pages)) {}
-
-  void open(E57Document document) {
-    scans_ = std::move(document.scans);
+  E57Reader(E57Container file, E57Document document)
+      : pages_(std::move(file.pages)), scans_(std::move(document.scans)) {
     std::uint64_t points = 0;
     for (const E57Scan& scan : scans_) {
       extents_.push_back(find_e57_section(pages_, scan));
@@ -169,21 +164,18 @@ class E57Reader final : public PointReader {
   const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
-    batch.quanta.clear();
-    batch.positions.clear();
-    batch.absent.clear();
+    batch.clear();
     for (; scan_ < scans_.size(); ++scan_, reader_.reset()) {
       if (!scans_[scan_].has_coordinates()) {
         note_unread(scans_[scan_]);
         continue;
       }
-      if (!reader_)
-        reader_ = std::make_unique<E57ScanReader>(pages_, scans_[scan_], extents_[scan_]);
+      if (!reader_) reader_ = make_e57_scan_reader(pages_, scans_[scan_], extents_[scan_]);
       batch.turn = scans_[scan_].pose ? turn_of(*scans_[scan_].pose) : std::nullopt;
       if (reader_->read(batch)) return true;
-      remarks_.add(pages_.name(), scans_[scan_], reader_->findings());
+      remarks_.add(scans_[scan_], reader_->findings());
     }
-    info_.remarks = remarks_.messages(pages_.name());
+    info_.remarks = remarks_.messages();
     if (info_.unit == LengthUnit::kFoot || info_.unit == LengthUnit::kUsSurveyFoot) {
       info_.remarks.push_back(foot_warning(pages_.name()));
     }
@@ -193,7 +185,7 @@ class E57Reader final : public PointReader {
   void rewind() override {
     scan_ = 0;
     reader_.reset();
-    remarks_ = {};
+    remarks_ = E57Remarks(pages_.name());
   }
 
  private:
@@ -215,7 +207,7 @@ class E57Reader final : public PointReader {
 
   void note_unread(const E57Scan& scan) {
     if (scan.records == 0) {
-      remarks_.add(pages_.name(), scan, {});
+      remarks_.add(scan, {});
     } else {
       remarks_.add_without_coordinates();
     }
@@ -225,7 +217,7 @@ class E57Reader final : public PointReader {
   std::vector<E57Scan> scans_;
   std::vector<E57Extent> extents_;
   CloudInfo info_;
-  E57Remarks remarks_;
+  E57Remarks remarks_{pages_.name()};
   std::size_t scan_ = 0;
   std::unique_ptr<E57ScanReader> reader_;  ///< reader of scans_[scan_]; null before its first point
 };
@@ -235,9 +227,7 @@ class E57Reader final : public PointReader {
 std::unique_ptr<PointReader> read_e57(File file) {
   E57Container container = open_e57(std::move(file));
   E57Document document = read_e57_document(container);
-  auto reader = std::make_unique<E57Reader>(std::move(container));
-  reader->open(std::move(document));
-  return reader;
+  return std::make_unique<E57Reader>(std::move(container), std::move(document));
 }
 
 }  // namespace clearway
