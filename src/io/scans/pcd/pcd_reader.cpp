@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -16,6 +15,7 @@
 #include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/scans/pcd/lzf_stream.hpp"
+#include "io/scans/pcd/pcd_header.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_reader.hpp"
 #include "io/scans/text_copy.hpp"
@@ -23,20 +23,117 @@
 namespace clearway {
 namespace {
 
+/// The remark on a viewpoint; nullopt for the default, which is 0 0 0 and no rotation.
+std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoint,
+                                           const std::string& name) {
+  const double norm =
+      std::hypot(std::hypot(viewpoint[3], viewpoint[4]), std::hypot(viewpoint[5], viewpoint[6]));
+  const double cosine = norm > 0 ? std::min(1.0, std::abs(viewpoint[3]) / norm) : 1;
+  const double degrees = 2 * std::acos(cosine) * 180 / std::numbers::pi;
+  if (std::all_of(viewpoint.begin(), viewpoint.begin() + 3, [](double c) { return c == 0; }) &&
+      degrees == 0) {
+    return std::nullopt;
+  }
+  return warning(
+      "pcd-viewpoint",
+      name + ": its VIEWPOINT lies at (" + format_digits(viewpoint[0], 9) + ", " +
+          format_digits(viewpoint[1], 9) + ", " + format_digits(viewpoint[2], 9) + "), turned by " +
+          format_digits(degrees, 9) +
+          " degrees. It is not applied: PCL defines it as the place of the sensor. If the points "
+          "are in the sensor's frame, apply it first, for example with "
+          "pcl_transform_from_viewpoint",
+      {{"x", viewpoint[0]}, {"y", viewpoint[1]}, {"z", viewpoint[2]}, {"degrees", degrees}});
+}
+
+/// Base of the readers of the three kinds of PCD file.
+class PcdBodyReader : public PointReader {
+ public:
+  const CloudInfo& info() const override { return info_; }
+
+  bool read(PointBatch& batch) override {
+    batch.clear();
+    batch.positions.resize(std::min<std::uint64_t>(kBatchPoints, header_.points - next_));
+    if (batch.positions.empty()) {
+      if (!finished_) check_end();
+      finished_ = true;
+      return false;
+    }
+    read_points(batch.positions);
+    next_ += batch.positions.size();
+    if (header_.height > 1) mark_absent(batch);
+    return true;
+  }
+
+  void rewind() override {
+    input_.return_to(first_point_);
+    next_ = 0;
+  }
+
+ protected:
+  /// input: stands after the line DATA.
+  PcdBodyReader(InputBuffer input, PcdHeader header)
+      : input_(std::move(input)), header_(std::move(header)), first_point_(input_.mark()) {
+    info_.declared_points = header_.points;
+    if (!header_.viewpoint) return;
+    if (auto remark = remark_on_viewpoint(*header_.viewpoint, input_.name())) {
+      info_.remarks.push_back(std::move(*remark));
+      const auto& [x, y, z, w, i, j, k] = *header_.viewpoint;
+      info_.origins = {{0, Vec3{x, y, z}}};
+      info_.origins_rest_on = "viewpoints of PCD";
+    }
+  }
+
+  /// Reads the next points, in order; header_.points in all.
+  virtual void read_points(std::span<Vec3> out) = 0;
+  /// Called with the input after the last point. Throws InputError where the file does not end
+  /// there. Of binary data it refuses anything but what PCL leaves there: up to a page of zeros, or
+  /// a line break.
+  virtual void check_end() {
+    constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 16;  // a page on any machine
+    const std::uint64_t position = input_.position();
+    const std::uint64_t left = *input_.size() - position;
+    const auto bytes = left <= kMostPadding ? input_.take(left) : std::span<const std::byte>();
+    const auto pads = [](std::byte b) {
+      return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'};
+    };
+    if (left <= kMostPadding && std::all_of(bytes.begin(), bytes.end(), pads)) return;
+    refuse_byte(input_.name(), position,
+                format_count(left) + " bytes behind the last of " + format_count(header_.points) +
+                    " points; expected the end of the file");
+  }
+
+  InputBuffer input_;
+  PcdHeader header_;
+  CloudInfo info_;
+  InputBuffer::Mark first_point_;
+  std::uint64_t next_ = 0;  ///< index of the point to read next
+
+ private:
+  static void mark_absent(PointBatch& batch) {
+    constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+    for (std::uint32_t i = 0; i < batch.positions.size(); ++i) {
+      Vec3& p = batch.positions[i];
+      if (!std::isnan(p.x) && !std::isnan(p.y) && !std::isnan(p.z)) continue;
+      p = {kNaN, kNaN, kNaN};
+      batch.absent.push_back(i);
+    }
+  }
+
+  bool finished_ = false;
+};
+
 /// Reads ASCII data with one point per line. Numbers are read as written, even where TYPE promises
 /// fewer digits.
 class AsciiPcdReader final : public PcdBodyReader {
  public:
   AsciiPcdReader(InputBuffer input, PcdHeader header)
       : PcdBodyReader(std::move(input), std::move(header)) {
-    std::array<std::uint64_t, 3> words{};
     for (std::size_t i = 0; i < header_.fields.size(); ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        if (header_.coordinates[axis] == i) words[axis] = words_of_point_;
+        if (header_.coordinates[axis] == i) words_[axis] = words_of_point_;
       }
       words_of_point_ += header_.fields[i].count;
     }
-    words_ = words;
     check_room();
   }
 
@@ -62,6 +159,7 @@ class AsciiPcdReader final : public PcdBodyReader {
   }
 
   void read_points(std::span<Vec3> out) override {
+    if (next_ == 0) open_end_ = OpenEnd();
     std::string_view line;
     for (std::size_t i = 0; i < out.size(); ++i) {
       if (!next_line(line)) {
@@ -73,8 +171,6 @@ class AsciiPcdReader final : public PcdBodyReader {
       open_end_.see(input_, line);
     }
   }
-
-  void start_again() override { open_end_ = OpenEnd(); }
 
   void check_end() override {
     std::string_view line;
@@ -116,14 +212,6 @@ class AsciiPcdReader final : public PcdBodyReader {
   OpenEnd open_end_;
 };
 
-}  // namespace
-
-std::unique_ptr<PointReader> read_ascii_pcd(InputBuffer input, PcdHeader header) {
-  return std::make_unique<AsciiPcdReader>(std::move(input), std::move(header));
-}
-
-namespace {
-
 /// Reads binary data, in which the fields of a point are adjacent.
 class BinaryPcdReader final : public PcdBodyReader {
  public:
@@ -161,21 +249,10 @@ class BinaryPcdReader final : public PcdBodyReader {
     }
   }
 
-  void start_again() override {}
-  void check_end() override { check_only_padding(); }
-
   std::size_t stride_;
   std::array<std::size_t, 3> offsets_{};
   std::array<PcdLoad, 3> loads_{};
 };
-
-}  // namespace
-
-std::unique_ptr<PointReader> read_binary_pcd(InputBuffer input, PcdHeader header) {
-  return std::make_unique<BinaryPcdReader>(std::move(input), std::move(header));
-}
-
-namespace {
 
 // Bytes of a column that are decoded at a time.
 constexpr std::size_t kColumnBytes = std::size_t{1} << 16;
@@ -217,12 +294,10 @@ class CompressedPcdReader final : public PcdBodyReader {
     for (std::size_t axis = 0; axis < 3; ++axis) read_column(axis, out);
   }
 
-  void start_again() override {}
-
   void check_end() override {
     if (!starts_[0]) find_columns();
     input_.skip(end_ - begin_);
-    check_only_padding();
+    PcdBodyReader::check_end();
   }
 
   /// Decodes everything once, to find where x, y and z start and to check that the data is sound.
@@ -271,111 +346,17 @@ class CompressedPcdReader final : public PcdBodyReader {
 
 }  // namespace
 
-std::unique_ptr<PointReader> read_compressed_pcd(InputBuffer input, PcdHeader header) {
-  return std::make_unique<CompressedPcdReader>(std::move(input), std::move(header));
-}
-
-namespace {
-
-// At least a page of memory on any machine.
-constexpr std::uint64_t kMostPadding = std::uint64_t{1} << 16;
-
-/// The remark on a viewpoint; nullopt for the default, which is 0 0 0 and no rotation.
-std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoint,
-                                           const std::string& name) {
-  const double norm =
-      std::hypot(std::hypot(viewpoint[3], viewpoint[4]), std::hypot(viewpoint[5], viewpoint[6]));
-  const double cosine = norm > 0 ? std::min(1.0, std::abs(viewpoint[3]) / norm) : 1;
-  const double degrees = 2 * std::acos(cosine) * 180 / std::numbers::pi;
-  if (std::all_of(viewpoint.begin(), viewpoint.begin() + 3, [](double c) { return c == 0; }) &&
-      degrees == 0) {
-    return std::nullopt;
-  }
-  return warning(
-      "pcd-viewpoint",
-      name + ": its VIEWPOINT lies at (" + format_digits(viewpoint[0], 9) + ", " +
-          format_digits(viewpoint[1], 9) + ", " + format_digits(viewpoint[2], 9) + "), turned by " +
-          format_digits(degrees, 9) +
-          " degrees. It is not applied: PCL defines it as the place of the sensor. If the points "
-          "are in the sensor's frame, apply it first, for example with "
-          "pcl_transform_from_viewpoint",
-      {{"x", viewpoint[0]}, {"y", viewpoint[1]}, {"z", viewpoint[2]}, {"degrees", degrees}});
-}
-
-}  // namespace
-
-PcdBodyReader::PcdBodyReader(InputBuffer input, PcdHeader header)
-    : input_(std::move(input)), header_(std::move(header)), first_point_(input_.mark()) {
-  info_.declared_points = header_.points;
-  if (!header_.viewpoint) return;
-  if (auto remark = remark_on_viewpoint(*header_.viewpoint, input_.name())) {
-    info_.remarks.push_back(std::move(*remark));
-    const auto& [x, y, z, w, i, j, k] = *header_.viewpoint;
-    info_.origins = {{0, Vec3{x, y, z}}};
-    info_.origins_rest_on = "viewpoints of PCD";
-  }
-}
-
-bool PcdBodyReader::read(PointBatch& batch) {
-  batch.quanta.clear();
-  batch.absent.clear();
-  batch.positions.resize(std::min<std::uint64_t>(kBatchPoints, header_.points - next_));
-  if (batch.positions.empty()) {
-    finish();
-    return false;
-  }
-  read_points(batch.positions);
-  next_ += batch.positions.size();
-  if (header_.height > 1) mark_absent(batch);
-  return true;
-}
-
-void PcdBodyReader::rewind() {
-  input_.return_to(first_point_);
-  next_ = 0;
-  start_again();
-}
-
-void PcdBodyReader::mark_absent(PointBatch& batch) {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  for (std::uint32_t i = 0; i < batch.positions.size(); ++i) {
-    Vec3& p = batch.positions[i];
-    if (!std::isnan(p.x) && !std::isnan(p.y) && !std::isnan(p.z)) continue;
-    p = {kNaN, kNaN, kNaN};
-    batch.absent.push_back(i);
-  }
-}
-
-void PcdBodyReader::finish() {
-  if (finished_) return;
-  check_end();
-  finished_ = true;
-}
-
-void PcdBodyReader::check_only_padding() {
-  const std::uint64_t position = input_.position();
-  const std::uint64_t left = *input_.size() - position;
-  const auto bytes = left <= kMostPadding ? input_.take(left) : std::span<const std::byte>();
-  const auto pads = [](std::byte b) {
-    return b == std::byte{0} || b == std::byte{'\n'} || b == std::byte{'\r'};
-  };
-  if (left <= kMostPadding && std::all_of(bytes.begin(), bytes.end(), pads)) return;
-  refuse_byte(input_.name(), position,
-              format_count(left) + " bytes behind the last of " + format_count(header_.points) +
-                  " points; expected the end of the file");
-}
-
 std::unique_ptr<PointReader> read_pcd(InputBuffer input) {
   PcdHeader header = read_pcd_header(input);
   switch (header.data) {
     case PcdData::kAscii:
-      return read_ascii_pcd(std::move(input), std::move(header));
+      return std::make_unique<AsciiPcdReader>(std::move(input), std::move(header));
     case PcdData::kBinary:
-      return read_binary_pcd(std::move(input), std::move(header));
+      return std::make_unique<BinaryPcdReader>(std::move(input), std::move(header));
     case PcdData::kCompressed:
       break;
   }
-  return read_compressed_pcd(std::move(input), std::move(header));
+  return std::make_unique<CompressedPcdReader>(std::move(input), std::move(header));
 }
 
 }  // namespace clearway
