@@ -10,7 +10,7 @@
 #include "io/files/text_number.hpp"
 #include "io/models/mesh/mesh_builder.hpp"
 #include "io/scans/input_buffer.hpp"
-#include "io/scans/text/table_header.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 
