@@ -399,9 +399,10 @@ std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates(std::uint32_t 
 
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::coordinates_of_block(
     std::uint32_t cell) const {
+  const auto chunks = mapped_coordinates(cell);  // which checks them, unless that is done
   std::atomic_ref(checked_[cell]).store(1, std::memory_order_release);
   handed_out_.coordinates.add(packed_bytes(cell) / blocks_per_cell());
-  return mapped_coordinates(cell);
+  return chunks;
 }
 
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::peek(std::uint32_t cell) const {
