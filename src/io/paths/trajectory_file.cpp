@@ -11,6 +11,7 @@
 #include "clearway/answer.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/labels.hpp"
+#include "core/describe/trajectory.hpp"
 #include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
 #include "io/files/text_writer.hpp"
@@ -251,29 +252,8 @@ void remark_times(const std::filesystem::path& path, TrajectoryFile& found) {
 }  // namespace
 
 const char* name_of(TrajectoryFormat format) {
-  switch (format) {
-    case TrajectoryFormat::kAuto:
-      return "auto";
-    case TrajectoryFormat::kMatrix:
-      return "matrix";
-    case TrajectoryFormat::kTum:
-      return "tum";
-    case TrajectoryFormat::kEuroc:
-      return "euroc";
-    case TrajectoryFormat::kCsv:
-      return "csv";
-    case TrajectoryFormat::kPoseXyzw:
-      return "pose-xyzw";
-    case TrajectoryFormat::kPoseWxyz:
-      return "pose-wxyz";
-    case TrajectoryFormat::kSbet:
-      return "sbet";
-    case TrajectoryFormat::kThreedtkPose:
-      return "3dtk-pose";
-    case TrajectoryFormat::kThreedtkFrames:
-      return "3dtk-frames";
-  }
-  return "";
+  return std::ranges::find(kChoices<TrajectoryFormat>, format, &Choice<TrajectoryFormat>::value)
+      ->name;
 }
 
 namespace {

@@ -83,22 +83,10 @@ namespace {
 
 /// Appends a character of Unicode as UTF-8.
 void append_utf8(std::uint32_t code, std::string& out) {
-  const auto put = [&out](std::uint32_t byte) { out += static_cast<char>(byte); };
-  if (code < 0x80) {
-    put(code);
-  } else if (code < 0x800) {
-    put(0xC0 | code >> 6);
-    put(0x80 | (code & 0x3F));
-  } else if (code < 0x10000) {
-    put(0xE0 | code >> 12);
-    put(0x80 | (code >> 6 & 0x3F));
-    put(0x80 | (code & 0x3F));
-  } else {
-    put(0xF0 | code >> 18);
-    put(0x80 | (code >> 12 & 0x3F));
-    put(0x80 | (code >> 6 & 0x3F));
-    put(0x80 | (code & 0x3F));
-  }
+  constexpr std::uint32_t kFirst[] = {0, 0xC0, 0xE0, 0xF0};
+  unsigned more = code < 0x80 ? 0 : code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;  // further bytes
+  out += static_cast<char>(kFirst[more] | code >> 6 * more);
+  while (more-- > 0) out += static_cast<char>(0x80 | (code >> 6 * more & 0x3F));
 }
 
 /// Decodes UTF-16 up to its first zero. big: whether the first byte of two is the higher one.
@@ -157,17 +145,11 @@ bool is_word(char c) {
 /// Whether a text begins like well-known text. Names in PROJ's database have round brackets too, as
 /// in "NAD83(HARN)".
 bool is_wkt(std::string_view text) {
-  std::size_t at = 0;
-  const auto skip = [&](auto which) {
-    while (at < text.size() && which(text[at])) ++at;
-  };
-  skip(is_word);
-  if (at == 0) return false;
-  skip(is_space);
-  if (at == text.size() || text[at] != '(') return at < text.size() && text[at] == '[';
-  ++at;
-  skip(is_space);
-  return at < text.size() && text[at] == '"';
+  const auto word_end = std::ranges::find_if_not(text, is_word);
+  if (word_end == text.begin()) return false;
+  text = trimmed({word_end, text.end()});
+  return text.starts_with('[') ||
+         (text.starts_with('(') && trimmed(text.substr(1)).starts_with('"'));
 }
 
 /// The systems in a well-known text, by its brackets outside of quoted names alone.

@@ -65,6 +65,10 @@ double seconds_of(double time) {
                                          : 1);
 }
 
+void check(Objection objection) {
+  if (!objection.text.empty()) throw objection;
+}
+
 /// The name in a field, without blanks and quotes around it.
 std::string name_of_pose(std::string_view field) {
   constexpr std::string_view kAround = " \t\"'";
@@ -134,45 +138,49 @@ double PoseRows::metres_of(const LabelColumn& column) const {
 }
 
 Objection PoseRows::add(std::string_view line) {
-  if (format_ == TrajectoryFormat::kMatrix) return add_matrix(line);
-  return columns_ ? add_columns(line) : add_quaternion(line);
+  try {
+    if (format_ == TrajectoryFormat::kMatrix) {
+      add_matrix(line);
+    } else if (columns_) {
+      add_columns(line);
+    } else {
+      add_quaternion(line);
+    }
+    return {};
+  } catch (Objection& objection) {
+    return std::move(objection);
+  }
+}
+
+template <typename Rows, typename Use>
+void PoseRows::each_list(PoseRows& rows, Rows& others, Use use) {
+  use(rows.poses_, others.poses_);
+  use(rows.angles_, others.angles_);
+  for_each_label([&](const auto& label) { use(label.of(rows.labels_), label.of(others.labels_)); });
 }
 
 PoseRows PoseRows::for_lines(std::size_t lines) const {
   PoseRows part(format_, columns_, options_, name_);
   part.row_numbers_ = row_numbers_;
-  const bool angles = columns_ && columns_->rotation.size() == 3;
-  if (angles) {
-    part.angles_.reserve(lines);
-  } else {
-    part.poses_.reserve(lines);
-  }
-  for_each_label([&](const auto& label) {
-    if (!label.of(labels_).empty()) label.of(part.labels_).reserve(lines);
+  each_list(part, *this, [lines](auto& list, const auto& first) {
+    if (!first.empty()) list.reserve(lines);
   });
   return part;
 }
 
 void PoseRows::append(std::vector<PoseRows> parts) {
-  const auto append_all = [&parts](const auto& list_of, auto& out) {
-    std::size_t all = out.size();
-    for (PoseRows& part : parts) all += list_of(part).size();
-    out.reserve(all);
-    for (PoseRows& part : parts) {
-      auto& from = list_of(part);
-      out.insert(out.end(), std::make_move_iterator(from.begin()),
-                 std::make_move_iterator(from.end()));
-      from = {};
-    }
-  };
-  append_all(
-      [](PoseRows & rows) -> auto& { return rows.poses_; }, poses_);
-  append_all(
-      [](PoseRows & rows) -> auto& { return rows.angles_; }, angles_);
-  for_each_label([&](const auto& label) {
-    append_all(
-        [&](PoseRows & rows) -> auto& { return label.of(rows.labels_); }, label.of(labels_));
+  std::size_t all = 1;
+  for (const PoseRows& part : parts) all += part.poses_.size() + part.angles_.size();
+  each_list(*this, *this, [all](auto& list, const auto&) {
+    if (!list.empty()) list.reserve(all);
   });
+  for (PoseRows& part : parts) {
+    each_list(*this, part, [](auto& list, auto& more) {
+      list.insert(list.end(), std::make_move_iterator(more.begin()),
+                  std::make_move_iterator(more.end()));
+      more = {};
+    });
+  }
 }
 
 void PoseRows::push(const Pose& pose) {
@@ -180,88 +188,78 @@ void PoseRows::push(const Pose& pose) {
   for (double& coordinate : poses_.back().translation) coordinate = in_metres_(coordinate);
 }
 
-Objection PoseRows::add_matrix(std::string_view line) {
+void PoseRows::add_matrix(std::string_view line) {
   const auto count = parse_number_line(line, numbers_);
   if (count != 12u && count != 16u) {
-    return objection_to_count(line, count, numbers_.size(), "12 or 16, a row-major matrix");
+    throw objection_to_count(line, count, numbers_.size(), "12 or 16, a row-major matrix");
   }
   if (row_numbers_ == 0) row_numbers_ = *count;
   if (count != row_numbers_) {
-    return {std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
-            " as in the first line"};
+    throw Objection{std::to_string(*count) + " numbers; expected " + std::to_string(row_numbers_) +
+                    " as in the first line"};
   }
   Pose pose{};
-  Objection objection =
-      pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose);
-  if (objection.text.empty()) push(pose);
-  return objection;
+  check(pose_of_matrix(std::span(numbers_).first(*count), options_.allow_non_rigid, pose));
+  push(pose);
 }
 
-Objection PoseRows::add_quaternion(std::string_view line) {
+void PoseRows::add_quaternion(std::string_view line) {
   const auto count = parse_number_line(line, numbers_);
   const bool tum = format_ == TrajectoryFormat::kTum;
   const bool w_first = format_ == TrajectoryFormat::kPoseWxyz;
   if (count != (tum ? 8u : 7u)) {
-    return {count ? (*count > numbers_.size() ? "more than 16" : std::to_string(*count)) +
-                        " numbers; expected " +
-                        (tum       ? "8: t x y z qx qy qz qw"
-                         : w_first ? "7: x y z qw qx qy qz"
-                                   : "7: x y z qx qy qz qw")
-                  : objection_to_count(line, count, numbers_.size(), "a pose").text};
+    throw Objection{count ? (*count > numbers_.size() ? "more than 16" : std::to_string(*count)) +
+                                " numbers; expected " +
+                                (tum       ? "8: t x y z qx qy qz qw"
+                                 : w_first ? "7: x y z qw qx qy qz"
+                                           : "7: x y z qx qy qz qw")
+                          : objection_to_count(line, count, numbers_.size(), "a pose").text};
   }
-  if (tum && !std::isfinite(numbers_[0])) return {"expected a finite time"};
+  if (tum && !std::isfinite(numbers_[0])) throw Objection{"expected a finite time"};
   const auto numbers = std::span<const double>(numbers_).subspan(tum ? 1 : 0, 7);
   std::array<double, 4> quaternion{numbers[3], numbers[4], numbers[5], numbers[6]};
   if (w_first) quaternion = {numbers[4], numbers[5], numbers[6], numbers[3]};
   Pose pose{};
-  Objection objection = pose_of_quaternion(numbers.first<3>(), quaternion, pose);
-  if (!objection.text.empty()) return objection;
+  check(pose_of_quaternion(numbers.first<3>(), quaternion, pose));
   if (tum) labels_.time.push_back(seconds_of(numbers_[0]));
   push(pose);
-  return {};
 }
 
-Objection PoseRows::add_columns(std::string_view line) {
+void PoseRows::add_columns(std::string_view line) {
   split_fields(line, columns_->separator, fields_);
   if (fields_.size() != columns_->fields) {
-    return {objection_to_fields(line, fields_.size(), columns_->fields)};
+    throw Objection{objection_to_fields(line, fields_.size(), columns_->fields)};
   }
   std::array<double, 3> position{};
-  Objection objection = numbers_in(columns_->position, position);
-  if (!objection.text.empty()) return objection;
+  numbers_in(columns_->position, position);
   if (columns_->rotation.size() == 3) return add_angles(position);
   std::array<double, 9> rotation{};
   const auto found = std::span(rotation).first(columns_->rotation.size());
-  objection = numbers_in(columns_->rotation, found);
-  if (!objection.text.empty()) return objection;
+  numbers_in(columns_->rotation, found);
   Pose pose{};
   if (found.size() == 4) {
-    objection = pose_of_quaternion(position, std::span<const double>(found).first<4>(), pose);
+    check(pose_of_quaternion(position, std::span<const double>(found).first<4>(), pose));
   } else {
     std::array<double, 12> matrix{};
     for (std::size_t k = 0; k < 9; ++k) matrix[4 * (k / 3) + k % 3] = rotation[k];
     for (std::size_t k = 0; k < 3; ++k) matrix[4 * k + 3] = position[k];
-    objection = pose_of_matrix(matrix, options_.allow_non_rigid, pose);
+    check(pose_of_matrix(matrix, options_.allow_non_rigid, pose));
   }
-  if (!objection.text.empty()) return objection;
   add_labels();
   push(pose);
-  return {};
 }
 
-Objection PoseRows::add_angles(const std::array<double, 3>& position) {
+void PoseRows::add_angles(const std::array<double, 3>& position) {
   std::array<double, 3> angles{};
-  Objection objection = numbers_in(columns_->rotation, angles);
-  if (!objection.text.empty()) return objection;
+  numbers_in(columns_->rotation, angles);
   const double sum = position[0] + position[1] + position[2] + angles[0] + angles[1] + angles[2];
-  if (!std::isfinite(sum)) return {"expected finite numbers"};
+  if (!std::isfinite(sum)) throw Objection{"expected finite numbers"};
   const UnitFactor horizontal = is_geographic() ? UnitFactor(1) : in_metres_;
   angles_.push_back({{horizontal(position[0]), horizontal(position[1]), in_metres_(position[2])},
                      angles[0],
                      angles[1],
                      angles[2]});
   add_labels();
-  return {};
 }
 
 void PoseRows::add_labels() {
@@ -287,13 +285,12 @@ void PoseRows::add_label(const PoseLabel<std::string>& label, std::string_view f
   label.of(labels_).push_back(name_of_pose(field));
 }
 
-Objection PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
+void PoseRows::numbers_in(std::span<const std::size_t> columns, std::span<double> out) const {
   for (std::size_t k = 0; k < columns.size(); ++k) {
     const auto value = parse_whole_number(fields_[columns[k]]);
-    if (!value) return {objection_to_number(fields_[columns[k]], columns[k], "a number")};
+    if (!value) throw Objection{objection_to_number(fields_[columns[k]], columns[k], "a number")};
     out[k] = *value;
   }
-  return {};
 }
 
 void PoseRows::finish(TrajectoryFile& out) {

@@ -43,11 +43,15 @@ class PoseRows {
   void finish(TrajectoryFile& out);
 
  private:
-  Objection add_matrix(std::string_view line);
-  Objection add_quaternion(std::string_view line);
-  Objection add_columns(std::string_view line);
-  Objection add_angles(const std::array<double, 3>& position);
-  Objection numbers_in(std::span<const std::size_t> columns, std::span<double> out) const;
+  /// Calls `use` with each list of some rows and the same list of others.
+  template <typename Rows, typename Use>
+  static void each_list(PoseRows& rows, Rows& others, Use use);
+  // These throw an Objection to the line.
+  void add_matrix(std::string_view line);
+  void add_quaternion(std::string_view line);
+  void add_columns(std::string_view line);
+  void add_angles(const std::array<double, 3>& position);
+  void numbers_in(std::span<const std::size_t> columns, std::span<double> out) const;
   void add_labels();
   void add_label(const PoseLabel<double>& label, std::string_view field,
                  const UnitFactor& in_metres);
