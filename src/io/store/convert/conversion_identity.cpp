@@ -51,11 +51,6 @@ fs::path known_path(const fs::path& path) {
   return path.has_filename() ? whole / path.filename() : whole;
 }
 
-std::string value_text(bool value) { return value ? "yes" : "no"; }
-std::string value_text(double value) { return format_number(value); }
-std::string value_text(int value) { return std::to_string(value); }
-std::string value_text(std::uint32_t value) { return std::to_string(value); }
-std::string value_text(std::uint64_t value) { return std::to_string(value); }
 std::string value_text(const std::string& value) { return value.empty() ? "none" : value; }
 std::string value_text(const std::optional<double>& value) {
   return value ? format_number(*value) : "none";

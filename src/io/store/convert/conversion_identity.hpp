@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "core/describe/convert.hpp"
+#include "core/util/format.hpp"
 #include "io/result/journal.hpp"
 #include "io/store/convert/convert.hpp"
 
@@ -20,20 +21,23 @@ bool shapes_no_store(const std::string& key);
 /// because the store names its sources.
 std::filesystem::path known_path(const std::filesystem::path& path);
 
-std::string value_text(bool value);
-std::string value_text(double value);
-std::string value_text(int value);
-std::string value_text(std::uint32_t value);
-std::string value_text(std::uint64_t value);
+template <typename Number>
+requires std::is_arithmetic_v<Number> || std::is_enum_v<Number> std::string value_text(
+    Number value) {
+  if constexpr (std::is_same_v<Number, bool>) {
+    return value ? "yes" : "no";
+  } else if constexpr (std::is_floating_point_v<Number>) {
+    return format_number(value);
+  } else {
+    return std::to_string(
+        static_cast<std::conditional_t<std::is_enum_v<Number>, int, Number>>(value));
+  }
+}
 std::string value_text(const std::string& value);
 std::string value_text(const std::optional<double>& value);
 std::string value_text(const FileUnit& unit);
 std::string value_text(const Vec3& v);
 std::string value_text(const std::vector<std::string>& values);
-template <typename Choice>
-requires std::is_enum_v<Choice> std::string value_text(Choice value) {
-  return std::to_string(static_cast<int>(value));
-}
 
 /// Adds the options with their values. add_file(identity, key, path): adds one that names a file.
 template <typename AddFile>

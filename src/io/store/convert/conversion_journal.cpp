@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kOverwrites = "overwrites";
 // Changes whenever records, or what they rest on, change their meaning.
-constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 3";
+constexpr const char* kMeaning = "store " CLEARWAY_VERSION ", records 4";
 
 // The name in an identity of an input.
 constexpr const char* kInput = "input ";

@@ -174,6 +174,10 @@ void check_options(const ConversionOptions& options) {
   if (options.regular_size && !(*options.regular_size > 0)) {
     throw UsageError("a regular layout: expected cubes of a positive length");
   }
+  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
+    throw UsageError("a scale of " + format_digits(*options.scale, 9) +
+                     ": expected a positive length");
+  }
   check_columns(options.columns);
   check_origins(options);
   check_corridor(options);
@@ -294,8 +298,7 @@ class Conversion {
   ConversionReport convert() {
     FoundInputs found;
     const bool were_found = take(ConversionPhase::kInspected, found);
-    EnvironmentSource environment(options_.inputs, environment_options(), progress_,
-                                  were_found ? &found : nullptr);
+    EnvironmentSource environment(options_, progress_, were_found ? &found : nullptr);
     found = environment.found();
     const bool were_read = found.chosen || !found.readable.skipped.empty();
     if (journal_ && were_read && !were_found) keep(ConversionPhase::kInspected, found);
@@ -342,8 +345,8 @@ class Conversion {
                               journal_ ? ConversionJournal::kPointsBegin : 0);
     if (!take_distributed(distribution, places)) {
       progress_.begin("distribute", counted.points, "points");
-      distribute(environment, counted.hashes(), lattice, tree, places, distribution, threads_,
-                 clocks_, progress_, origins_, &withheld_);
+      distribute(environment, counted, lattice, tree, places, distribution, threads_, clocks_,
+                 progress_, origins_, &withheld_);
       progress_.end();
       environment.refuse_changed();  // so that the sources' hashes are those of what was converted
       keep_distributed(environment, distribution, places);
@@ -387,9 +390,8 @@ class Conversion {
   /// Takes from the journal what an earlier process counted; returns false where it had not come to
   /// the end of it.
   bool take_counted(EnvironmentSource& environment, OriginTable& origins, Counted& all) {
-    ReadState read;
-    if (!take(ConversionPhase::kCounted, all, origins, read)) return false;
-    environment.restore(read);
+    environment.rewind();
+    if (!take(ConversionPhase::kCounted, all, origins, environment)) return false;
     environment.leave_out_times();
     return true;
   }
@@ -414,26 +416,24 @@ class Conversion {
       described[i] = true;
     }
     SourceDescription others(environment.read_files(), described, progress_);
-    InputSurvey survey{PlaceSample(environment.quantisation()), {}};
-    all.environment = count_environment(environment, lattice, survey, hashes, threads_, clocks_,
-                                        progress_, path ? &*path : nullptr);
+    PlaceSample places(environment.quantisation());
+    all.environment = count_environment(environment, lattice, places, all.boxes, hashes, threads_,
+                                        clocks_, progress_, path ? &*path : nullptr);
     all.sources = others.get(hashes.finish());
-    all.boxes.take(survey.boxes);
-    all.suspects = survey.places.suspects();
-    all.steps = find_steps(survey.places.points(), environment.points_of_files());
+    all.suspects = places.suspects();
+    all.steps = find_steps(places.points(), environment.points_of_files());
     if (path && all.environment.points > 0) {
       const MessageCallback collect = [&](const Message& message) {
         all.of_places.push_back(message);
       };
       MessageLog log(collect, unused);
-      all.origins_path = path->finish(environment, log);
+      all.origins_path = path->finish(log);
     }
     path.reset();
     collect_origins(environment, all.environment.input_points, origins);
     if (!journal_) return;
     environment.refuse_changed();  // so that nothing is kept of what is not in the files now
-    ReadState read = environment.state();
-    keep(ConversionPhase::kCounted, all, origins, read);
+    keep(ConversionPhase::kCounted, all, origins, environment);
   }
 
   /// Takes values from the journal, in the order in which keep() put them there; returns false
@@ -519,18 +519,6 @@ class Conversion {
     if (environment.unit() == LengthUnit::kUnknown) warn_of_degrees(*report_.box, log_);
   }
 
-  EnvironmentOptions environment_options() const {
-    return {.scale = options_.scale,
-            .unit = options_.unit,
-            .unit_z = options_.unit_z,
-            .ignore_crs = options_.ignore_crs,
-            .skip_unreadable = options_.skip_unreadable,
-            .columns = options_.columns,
-            .keep_withheld = options_.keep_withheld,
-            .with_times = !options_.origins_path.empty(),
-            .temporary_folder = folder_};
-  }
-
   void fill_metadata(const EnvironmentSource& environment, const CountedEnvironment& counted,
                      std::vector<SourceFile> sources) {
     report_.points = counted.points;
@@ -538,7 +526,9 @@ class Conversion {
                         .input_points = counted.input_points,
                         .cell_points = options_.cell_points,
                         .quantisation = environment.quantisation(),
-                        .layout = layout_name(options_.regular_size),
+                        .layout = options_.regular_size
+                                      ? "regular:" + format_number(*options_.regular_size)
+                                      : "adaptive",
                         .options = options_text_,
                         .unit = environment.unit(),
                         .crs_wkt = environment.crs_wkt(),
@@ -772,7 +762,9 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
   // Only files that were read whole have hashes by which they are known.
   if (store->metadata().near && store->metadata().near->unread > 0) return false;
   std::vector<std::filesystem::path> files = list_point_files(options.inputs);
-  if (options.skip_unreadable) files = readable_files(files, {}, progress).files;
+  if (options.skip_unreadable) {
+    files = files_of(files, readable_inputs(files, {}, progress).numbers);
+  }
   SourceDescription sources(with_pose_files(files), {}, progress);
   if (sources.get() != store->metadata().sources) return false;
   const std::vector<std::string> faults = verify_store(*store, progress, 1);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <tuple>
+#include <utility>
 
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
@@ -13,12 +13,15 @@
 namespace clearway {
 namespace {
 
-bool comes_before(const InputPoint& a, const InputPoint& b) {
-  return std::tie(a.file, a.point) < std::tie(b.file, b.point);
-}
+/// The number of a point among those of all inputs, by which they are in order.
+std::pair<std::size_t, std::uint64_t> number_of(const InputPoint& p) { return {p.file, p.point}; }
 
-bool is_same(const InputPoint& a, const InputPoint& b) {
-  return a.file == b.file && a.point == b.point;
+int axis_of(std::size_t side) { return static_cast<int>(side / 2); }
+
+/// Whether a point lies farther out than another one on this side.
+bool is_beyond(std::size_t side, const Vec3& a, const Vec3& b) {
+  const int axis = axis_of(side);
+  return side % 2 == 0 ? a[axis] < b[axis] : a[axis] > b[axis];
 }
 
 }  // namespace
@@ -32,25 +35,19 @@ void CoordinateRange::add(const Vec3& p, std::size_t file, std::uint64_t point) 
     }
     samples_.push_back(p);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto& least = extremes_[side(axis, false)];
-    const auto& greatest = extremes_[side(axis, true)];
-    if (least.size() < kKept || p[axis] < least.back().at[axis]) {
-      keep(side(axis, false), axis, false, {p, file, point});
-    }
-    if (greatest.size() < kKept || p[axis] > greatest.back().at[axis]) {
-      keep(side(axis, true), axis, true, {p, file, point});
-    }
+  for (std::size_t side = 0; side < extremes_.size(); ++side) {
+    const auto& kept = extremes_[side];
+    if (kept.size() < kKept || is_beyond(side, p, kept.back().at)) keep(side, {p, file, point});
   }
 }
 
-void CoordinateRange::keep(std::size_t side, int axis, bool greatest, const InputPoint& p) {
+void CoordinateRange::keep(std::size_t side, const InputPoint& p) {
   auto& kept = extremes_[side];
   if (kept.size() == kKept) kept.pop_back();
-  const auto behind = [=](const InputPoint& a, const InputPoint& b) {
-    return greatest ? a.at[axis] > b.at[axis] : a.at[axis] < b.at[axis];
+  const auto behind = [side](const InputPoint& a, const InputPoint& b) {
+    return is_beyond(side, a.at, b.at);
   };
-  kept.insert(std::upper_bound(kept.begin(), kept.end(), p, behind), p);
+  kept.insert(std::ranges::upper_bound(kept, p, behind), p);
 }
 
 double CoordinateRange::median(int axis) const {
@@ -64,28 +61,24 @@ double CoordinateRange::median(int axis) const {
 CoordinateRange::Far CoordinateRange::far_points(double reach) const {
   Far far;
   if (empty()) return far;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double middle = median(axis);
-    for (const bool greatest : {false, true}) {
-      const auto& kept = extremes_[side(axis, greatest)];
-      const auto is_far = [&](const InputPoint& p) {
-        return std::abs(p.at[axis] - middle) > reach;
-      };
-      std::copy_if(kept.begin(), kept.end(), std::back_inserter(far.points), is_far);
-      far.more = far.more || std::all_of(kept.begin(), kept.end(), is_far);
-    }
+  for (std::size_t side = 0; side < extremes_.size(); ++side) {
+    const double middle = median(axis_of(side));
+    const auto is_near = [&](const InputPoint& p) {
+      return std::abs(p.at[axis_of(side)] - middle) <= reach;
+    };
+    const auto& kept = extremes_[side];
+    std::ranges::remove_copy_if(kept, std::back_inserter(far.points), is_near);
+    far.more = far.more || std::ranges::none_of(kept, is_near);
   }
-  std::sort(far.points.begin(), far.points.end(), comes_before);
-  far.points.erase(std::unique(far.points.begin(), far.points.end(), is_same), far.points.end());
-  for (int axis = 0; axis < 3 && !far.more; ++axis) {
-    for (const bool greatest : {false, true}) {
-      const auto& kept = extremes_[side(axis, greatest)];
-      const auto rest = std::find_if(kept.begin(), kept.end(), [&](const InputPoint& p) {
-        return !std::binary_search(far.points.begin(), far.points.end(), p, comes_before);
-      });
-      far.more = far.more || rest == kept.end();
-      if (rest != kept.end()) (greatest ? far.hi : far.lo)[axis] = rest->at[axis];
-    }
+  std::ranges::sort(far.points, {}, number_of);
+  const auto again = std::ranges::unique(far.points, {}, number_of);
+  far.points.erase(again.begin(), again.end());
+  for (std::size_t side = 0; side < extremes_.size() && !far.more; ++side) {
+    const auto rest = std::ranges::find_if_not(extremes_[side], [&](const InputPoint& p) {
+      return std::ranges::binary_search(far.points, number_of(p), {}, number_of);
+    });
+    far.more = rest == extremes_[side].end();
+    if (!far.more) (side % 2 == 0 ? far.lo : far.hi)[axis_of(side)] = rest->at[axis_of(side)];
   }
   return far;
 }

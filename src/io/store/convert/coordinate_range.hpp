@@ -36,11 +36,11 @@ class CoordinateRange {
   void add(const Vec3& p, std::size_t file, std::uint64_t point);
 
   bool empty() const { return count_ == 0; }
-  double lo(int axis) const { return extremes_[side(axis, false)].front().at[axis]; }
-  double hi(int axis) const { return extremes_[side(axis, true)].front().at[axis]; }
+  double lo(int axis) const { return extreme(axis, false).at[axis]; }
+  double hi(int axis) const { return extreme(axis, true).at[axis]; }
   /// The point with the least or greatest coordinate.
   const InputPoint& extreme(int axis, bool greatest) const {
-    return extremes_[side(axis, greatest)].front();
+    return extremes_[2 * static_cast<std::size_t>(axis) + (greatest ? 1 : 0)].front();
   }
 
   Far far_points(double reach) const;
@@ -49,13 +49,10 @@ class CoordinateRange {
   static constexpr std::size_t kKept = 16;  // points kept on each side of each axis
   static constexpr std::size_t kMostSamples = std::size_t{1} << 14;
 
-  static std::size_t side(int axis, bool greatest) {
-    return 2 * static_cast<std::size_t>(axis) + (greatest ? 1 : 0);
-  }
-  void keep(std::size_t side, int axis, bool greatest, const InputPoint& p);
+  void keep(std::size_t side, const InputPoint& p);
   double median(int axis) const;
 
-  // For each side() the most extreme points, in descending order.
+  // The points with the least and greatest x, y and z, in this order, the most extreme ones first.
   std::array<std::vector<InputPoint>, 6> extremes_;
   std::vector<Vec3> samples_;  // a sample of the points: every (mask + 1)-th one
   std::uint64_t sample_mask_ = 0;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "core/geometry/inside.hpp"
@@ -118,13 +119,14 @@ class Fit {
 
 }  // namespace
 
-PlaceQuanta MeasuredQuanta::operator()(const PlaceQuanta& q) const {
-  if (!turn_) return q;
+PlaceQuanta measured(const QuantaBatch& batch, const PlaceQuanta& q,
+                     const Quantisation& quantisation) {
+  if (!batch.turn) return q;
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  const Vec3 p = pulled_back(*turn_, position(quantisation_, q[0], q[1], q[2]));
+  const Vec3 p = pulled_back(*batch.turn, position(quantisation, q[0], q[1], q[2]));
   PlaceQuanta out;
   for (std::size_t k = 0; k < 3; ++k) {
-    const double quantum = std::nearbyint(p[static_cast<int>(k)] / quantisation_.scale[k]);
+    const double quantum = std::nearbyint(p[static_cast<int>(k)] / quantisation.scale[k]);
     out[k] = static_cast<std::int32_t>(std::clamp(quantum, -kMost, kMost));
   }
   return out;
@@ -232,37 +234,30 @@ StepJudge::StepJudge(std::vector<InputSteps> inputs, const Quantisation& quantis
   }
 }
 
-std::vector<StepJudge::Found> StepJudge::cubes_of(const QuantaBatch& batch) const {
-  std::vector<Found> found;
-  if (cubes_.empty() || batch.quanta.empty()) return found;
+void StepJudge::add(const QuantaBatch& batch, std::shared_mutex& mutex) {
+  if (cubes_.empty() || batch.quanta.empty()) return;
   const auto input = std::ranges::upper_bound(inputs_, batch.source(0), {}, &InputSteps::end);
-  for (std::size_t i = 0; i < cubes_.size(); ++i) {
-    if (input == inputs_.end() || &inputs_[cubes_[i].input] != &*input) continue;
-    // A batch that is counted after a resumption does not say how it was turned.
-    if (input->is_turned && !batch.turn) continue;
-    const CubeSample& sample = cubes_[i].sample;
+  // A batch that is counted after a resumption does not say how it was turned.
+  if (input == inputs_.end() || (input->is_turned && !batch.turn)) return;
+  for (Sampled& sampled : cubes_) {
+    if (&inputs_[sampled.input] != &*input) continue;
     std::array<double, 3> cubes_per_quantum{};
     for (std::size_t k = 0; k < 3; ++k) {
-      cubes_per_quantum[k] = quantisation_.scale[k] / cubes_[i].edge;
+      cubes_per_quantum[k] = quantisation_.scale[k] / sampled.edge;
     }
-    Found& of_sample = found.emplace_back();
-    of_sample.sample = i;
-    const MeasuredQuanta measured(batch, quantisation_);
+    std::vector<CubeSample::Cube> cubes;
+    std::shared_lock reading(mutex);
     for (const auto& at : batch.quanta) {
-      const PlaceQuanta q = measured(at);
+      const PlaceQuanta q = measured(batch, at, quantisation_);
       CubeSample::Cube cube;
       for (std::size_t k = 0; k < 3; ++k) {
         cube[k] = std::llrint((q[k] - input->axes[k].first) * cubes_per_quantum[k]);
       }
-      if (sample.may_hold(cube)) of_sample.cubes.push_back(cube);
+      if (sampled.sample.may_hold(cube)) cubes.push_back(cube);
     }
-  }
-  return found;
-}
-
-void StepJudge::add(const std::vector<Found>& found) {
-  for (const auto& [sample, cubes] : found) {
-    for (const CubeSample::Cube& cube : cubes) cubes_[sample].sample.add(cube);
+    reading.unlock();
+    const std::lock_guard writing(mutex);
+    for (const CubeSample::Cube& cube : cubes) sampled.sample.add(cube);
   }
 }
 

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <shared_mutex>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "clearway/progress.hpp"
@@ -21,23 +23,14 @@ using PlaceQuanta = std::array<std::int32_t, 3>;
 /// A sampled point of an input.
 struct SampledPoint {
   PlaceQuanta at{};
-  PlaceQuanta measured{};  ///< as MeasuredQuanta
+  PlaceQuanta measured{};  ///< see measured()
   std::uint32_t file = 0;
   bool is_turned = false;  ///< whether both differ by a pose that was applied
 };
 
-/// The integers of a batch's points as they were measured: before a pose turned them.
-class MeasuredQuanta {
- public:
-  MeasuredQuanta(const QuantaBatch& batch, const Quantisation& quantisation)
-      : quantisation_(quantisation), turn_(batch.turn) {}
-
-  PlaceQuanta operator()(const PlaceQuanta& q) const;
-
- private:
-  const Quantisation& quantisation_;
-  const std::optional<Pose>& turn_;
-};
+/// The integers of a batch's point as it was measured: before a pose turned it.
+PlaceQuanta measured(const QuantaBatch& batch, const PlaceQuanta& q,
+                     const Quantisation& quantisation);
 
 /// The steps in which values come: all are `first` plus a multiple of `step`, but for their
 /// rounding to the store's integers and for 1 % of them. Both are in the store's integers.
@@ -78,18 +71,12 @@ class CubeSample {
 
   template <typename Values>
   void keep(Values& values) {
-    std::vector<Counted> all;
-    for (const auto& [cube, points] : cubes_) all.push_back({cube, points});
+    std::vector<std::pair<Cube, std::uint64_t>> all(cubes_.begin(), cubes_.end());
     values.add(level_, all);
-    cubes_.clear();
-    for (const Counted& counted : all) cubes_[counted.cube] = counted.points;
+    cubes_ = {all.begin(), all.end()};
   }
 
  private:
-  struct Counted {
-    Cube cube;
-    std::uint64_t points;
-  };
   struct Hash {
     std::size_t operator()(const Cube& cube) const;
   };
@@ -108,17 +95,9 @@ class StepJudge {
   /// metre: the length of a metre in the unit of the coordinates.
   StepJudge(std::vector<InputSteps> inputs, const Quantisation& quantisation, double metre);
 
-  bool any() const { return !cubes_.empty(); }
-
-  /// Points of a batch that belong to a sample, by their cubes.
-  struct Found {
-    std::size_t sample = 0;
-    std::vector<CubeSample::Cube> cubes;
-  };
-  /// Finds the points of a batch that add() counts. Several threads may call it at once, but not
-  /// while another one is in add().
-  std::vector<Found> cubes_of(const QuantaBatch& batch) const;
-  void add(const std::vector<Found>& found);
+  /// Counts the points of a batch. Several threads may call it at once with the same mutex, in any
+  /// order of the batches.
+  void add(const QuantaBatch& batch, std::shared_mutex& mutex);
 
   /// The coarsest steps of each axis that come from rounding, in the unit of the coordinates; 0
   /// where an axis shows none.

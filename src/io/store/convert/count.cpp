@@ -2,7 +2,9 @@
 
 #include <tbb/enumerable_thread_specific.h>
 
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -23,24 +25,8 @@ constexpr std::size_t kMostSubBins = 1 << 10;  // for each overfull bin
 // Coinciding points are counted by ranges of 2^20 source indices.
 constexpr unsigned kSourceShift = 20;
 
-/// Result of a batch from which nothing is made.
-struct Nothing {};
-
-/// Counts the points of each class.
-class ClassCounts {
- public:
-  void add(const QuantaBatch& batch) {
-    for (const std::uint8_t value : batch.classes) ++points_[value];
-    if (batch.classes.empty()) points_[0] += batch.quanta.size();
-  }
-  void merge(const ClassCounts& other) {
-    for (std::size_t i = 0; i < points_.size(); ++i) points_[i] += other.points_[i];
-  }
-  const std::array<std::uint64_t, 256>& points() const { return points_; }
-
- private:
-  std::array<std::uint64_t, 256> points_{};
-};
+/// Number of points of each class.
+using ClassCounts = std::array<std::uint64_t, 256>;
 
 /// Sums over all points that the counting pass makes besides the bins.
 struct PassSums {
@@ -69,18 +55,21 @@ BinCounter& gather(tbb::enumerable_thread_specific<BinCounter>& counters) {
 }
 
 std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice, PassSums& sums,
-                            InputSurvey& survey, PathOrigins* path, Progress& progress) {
-  tbb::enumerable_thread_specific<ClassCounts> classes;
+                            PlaceSample& places, FileBoxes& boxes, PathOrigins* path,
+                            Progress& progress) {
+  tbb::enumerable_thread_specific<ClassCounts> classes(ClassCounts{});
   tbb::enumerable_thread_specific<BinCounter> counters(
       [] { return BinCounter(kFinestShift, kMostBins); });
   for_each_batch<PathOrigins::OfBatch>(
       pass,
       [&](const QuantaBatch& batch) {
-        const auto running = pass.clocks().measure(Stage::kCount);
-        survey.boxes.add(batch);
+        const auto running = pass.clocks.measure(Stage::kCount);
+        boxes.add(batch);
         BinCounter& counter = counters.local();
         for (const auto& q : batch.quanta) counter.add(lattice(q, 0));
-        classes.local().add(batch);
+        ClassCounts& counts = classes.local();
+        for (const std::uint8_t value : batch.classes) ++counts[value];
+        if (batch.classes.empty()) counts[0] += batch.quanta.size();
         progress.advance(batch.quanta.size());
         return path ? path->origins_of(batch) : PathOrigins::OfBatch();
       },
@@ -88,11 +77,13 @@ std::vector<Bin> count_bins(const EnvironmentPass& pass, const Lattice& lattice,
         if (path) path->add(batch, origins);
         sums.points_hash.add(batch);
         sums.classes_hash.add(batch);
-        survey.places.add(batch);
+        places.add(batch);
         sums.points += batch.quanta.size();
       },
       [](const PathOrigins::OfBatch&) {});
-  for (const ClassCounts& counts : classes) sums.classes.merge(counts);
+  for (const ClassCounts& counts : classes) {
+    std::ranges::transform(counts, sums.classes, sums.classes.begin(), std::plus());
+  }
   const BinCounter& all = gather(counters);
   if (lattice.regular() && all.shift() > lattice.cube_bits()) {
     throw UsageError("a regular layout: more than " + std::to_string(kMostBins) +
@@ -157,10 +148,10 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
             std::vector<Bin>& bins, Progress& progress) {
   tbb::enumerable_thread_specific<Refinement> counters(
       [&tree] { return Refinement(tree.overfull()); });
-  for_each_batch<Nothing>(
+  for_each_batch<bool>(
       pass,
       [&](const QuantaBatch& batch) {
-        const auto running = pass.clocks().measure(Stage::kCount);
+        const auto running = pass.clocks.measure(Stage::kCount);
         Refinement& counter = counters.local();
         for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
           const LatticePoint point = lattice(batch.quanta[i], batch.source(i));
@@ -168,9 +159,9 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
           if (bin >= 0) counter.add(static_cast<std::size_t>(bin), point);
         }
         progress.advance(batch.quanta.size());
-        return Nothing();
+        return true;
       },
-      [](const QuantaBatch&, Nothing&) {}, [](Nothing&) {});
+      [](const QuantaBatch&, bool) {}, [](bool) {});
   Refinement all(tree.overfull());
   for (const Refinement& counter : counters) all.merge(counter);
   std::erase_if(bins, [](const Bin& bin) { return bin.count > kBucketPoints; });
@@ -182,20 +173,21 @@ void refine(const EnvironmentPass& pass, const Lattice& lattice, const SplitTree
 }  // namespace
 
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress, PathOrigins* path) {
+                                     PlaceSample& places, FileBoxes& boxes, FileHashes& files,
+                                     int threads, StageClocks& clocks, Progress& progress,
+                                     PathOrigins* path) {
   CountedEnvironment counted;
   PassSums sums{PointsHash(environment.quantisation())};
   progress.begin("count", environment.declared_points().value_or(0), "points");
   environment.rewind();
-  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, sums, survey,
-                            path, progress);
+  counted.bins = count_bins({environment, threads, &files, clocks, progress}, lattice, sums, places,
+                            boxes, path, progress);
   environment.leave_out_times();
   counted.points = sums.points;
   counted.input_points = environment.counts().input_points;
   counted.points_hash = sums.points_hash.digest(counted.input_points);
-  if (sums.classes.points()[0] < counted.points) {
-    counted.classes = {sums.classes_hash.digest(), sums.classes.points()};
+  if (sums.classes[0] < counted.points) {
+    counted.classes = {sums.classes_hash.digest(), sums.classes};
   }
   progress.end();
   for (;;) {

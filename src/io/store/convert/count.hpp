@@ -17,18 +17,6 @@ namespace clearway {
 
 class PathOrigins;
 
-/// Observations of the counting pass that serve warnings.
-struct InputSurvey {
-  PlaceSample places;
-  FileBoxes boxes;
-};
-
-/// Hashes that show whether a later pass reads the same points.
-struct CountedHashes {
-  std::uint64_t points;
-  std::optional<std::uint64_t> classes;  ///< nullopt where all points have class 0
-};
-
 struct CountedEnvironment {
   std::uint64_t points = 0;        ///< number of finite points
   std::uint64_t input_points = 0;  ///< number of all points
@@ -40,17 +28,14 @@ struct CountedEnvironment {
   void keep(Values& values) {
     values.add(points, input_points, points_hash, classes, bins);
   }
-
-  CountedHashes hashes() const {
-    return {points_hash, classes ? std::optional(classes->hash) : std::nullopt};
-  }
 };
 
 /// Performs the counting pass, which also hashes the files, and further passes while a bin is too
-/// full (docs/design/conversion.md). path: finds the origins of the points, or is null.
+/// full (docs/design/conversion.md). places, boxes: take what serves warnings. path: finds the
+/// origins of the points, or is null.
 CountedEnvironment count_environment(EnvironmentSource& environment, const Lattice& lattice,
-                                     InputSurvey& survey, FileHashes& files, int threads,
-                                     StageClocks& clocks, Progress& progress,
+                                     PlaceSample& places, FileBoxes& boxes, FileHashes& files,
+                                     int threads, StageClocks& clocks, Progress& progress,
                                      PathOrigins* path = nullptr);
 
 }  // namespace clearway

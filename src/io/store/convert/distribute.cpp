@@ -182,7 +182,7 @@ class Places {
 
 }  // namespace
 
-void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+void distribute(EnvironmentSource& environment, const CountedEnvironment& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
                 OriginTable* origins, WithheldCubes* withheld) {
@@ -217,9 +217,9 @@ void distribute(EnvironmentSource& environment, const CountedHashes& counted,
         grouped.points = {};
       });
   order.finish();
-  const bool same_classes =
-      has_classes ? classes.digest() == counted.classes : !counted.classes.has_value();
-  if (hash.digest(environment.counts().input_points) != counted.points || !same_classes) {
+  const bool same_classes = has_classes == counted.classes.has_value() &&
+                            (!has_classes || classes.digest() == counted.classes->hash);
+  if (hash.digest(environment.counts().input_points) != counted.points_hash || !same_classes) {
     refuse_change(environment);
   }
 }

@@ -115,7 +115,7 @@ class Distribution {
 /// Throws InputError when the input is not what was counted, ResourceError when the disk is full.
 /// places: counts the points at its places. origins: counts the points of each basis, or is null.
 /// withheld: collects the cubes of points that are left out as withheld, or is null.
-void distribute(EnvironmentSource& environment, const CountedHashes& counted,
+void distribute(EnvironmentSource& environment, const CountedEnvironment& counted,
                 const Lattice& lattice, const SplitTree& tree, PlaceCounter& places,
                 Distribution& distribution, int threads, StageClocks& clocks, Progress& progress,
                 OriginTable* origins = nullptr, WithheldCubes* withheld = nullptr);

@@ -21,14 +21,6 @@
 namespace clearway {
 namespace {
 
-const EnvironmentOptions& checked(const EnvironmentOptions& options) {
-  if (options.scale && !(*options.scale > 0 && std::isfinite(*options.scale))) {
-    throw UsageError("a scale of " + format_digits(*options.scale, 9) +
-                     ": expected a positive length");
-  }
-  return options;
-}
-
 /// Calls `read`. Where one of several files is refused, the error says that it can be skipped.
 template <typename Read>
 auto reading_one_of(std::size_t files, Read read) {
@@ -45,13 +37,11 @@ auto reading_one_of(std::size_t files, Read read) {
 
 }  // namespace
 
-EnvironmentSource::EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                                     const EnvironmentOptions& options, Progress& progress,
+EnvironmentSource::EnvironmentSource(const ConversionOptions& options, Progress& progress,
                                      const FoundInputs* found)
-    : options_(checked(options)),
-      how_to_read_{options.columns, true, options.with_times},
-      inputs_(inputs, options.skip_unreadable, how_to_read_, progress,
-              found != nullptr ? &found->readable : nullptr) {
+    : options_(options),
+      how_to_read_{options.columns, true, !options.origins_path.empty()},
+      inputs_(options, how_to_read_, progress, found != nullptr ? &found->readable : nullptr) {
   open_inputs();
   find_crs();
   withheld_edge_ = metre_cube_edge(crs_.unit);
@@ -73,32 +63,14 @@ FoundInputs EnvironmentSource::found() const {
   return {inputs_.readable(), chose_scale_ ? std::optional(quantisation_) : std::nullopt};
 }
 
-ReadState EnvironmentSource::state() const {
-  ReadState state{{}, points_of_files_, counts_};
-  for (const CloudInfo& info : infos_) {
-    state.files.push_back({info.remarks, info.origins, info.origins_rest_on});
-  }
-  return state;
-}
-
-void EnvironmentSource::restore(const ReadState& state) {
-  rewind();
-  for (std::size_t i = 0; i < std::min(infos_.size(), state.files.size()); ++i) {
-    infos_[i].remarks = state.files[i].remarks;
-    infos_[i].origins = state.files[i].origins;
-    infos_[i].origins_rest_on = state.files[i].origins_rest_on;
-  }
-  points_of_files_ = state.points_of_files;
-  counts_ = state.counts;
-}
-
 EnvironmentSource::~EnvironmentSource() = default;
 
 void EnvironmentSource::open_inputs() {
   if (inputs_.are_a_stream()) {
-    auto stream = open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"),
-                                  options_.temporary_folder, how_to_read_);
-    if (!stream->can_rewind()) stream = spool(std::move(stream), options_.temporary_folder);
+    const std::filesystem::path folder = folder_of(options_.output);
+    auto stream =
+        open_las_stream(File::adopt(::dup(STDIN_FILENO), "standard input"), folder, how_to_read_);
+    if (!stream->can_rewind()) stream = spool(std::move(stream), folder);
     stream_ = std::move(stream);
   }
   declared_points_ = 0;
@@ -118,7 +90,7 @@ void EnvironmentSource::open_inputs() {
 }
 
 void EnvironmentSource::find_crs() {
-  crs_ = common_crs(files(), infos_, {options_.unit, options_.unit_z, options_.ignore_crs});
+  crs_ = common_crs(files(), infos_, options_);
   for (std::size_t i = 0; i < files().size(); ++i) {
     if (infos_[i].faces == 0) continue;
     crs_.warnings.push_back(warning("mesh-faces", files()[i].string() + ": its " +
@@ -315,8 +287,7 @@ std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::siz
   std::array<std::int32_t, 3> out{};
   for (std::size_t k = 0; k < 3; ++k) {
     const double origin = own ? own->offset[k] : 0;
-    const double quantum =
-        std::nearbyint((origin - quantisation_.offset[k]) / quantisation_.scale[k]);
+    const double quantum = quantum_of(quantisation_, static_cast<int>(k), origin);
     if (!(quantum >= kLeastQuantum && quantum <= kGreatestQuantum)) return std::nullopt;
     out[k] = static_cast<std::int32_t>(quantum);
   }
@@ -328,19 +299,34 @@ std::optional<std::array<std::int32_t, 3>> EnvironmentSource::origin_of(std::siz
 // Conversion of records to the store's integers.
 
 namespace clearway {
+namespace {
+
+/// Leaves out the points i of a batch for which `keeps(i)` does not hold. Called in order.
+template <typename Keeps>
+void keep_points(QuantaBatch& out, Keeps keeps) {
+  std::vector<std::uint32_t> offsets;
+  for (std::size_t i = 0; i < out.quanta.size(); ++i) {
+    if (!keeps(i)) continue;
+    out.quanta[offsets.size()] = out.quanta[i];
+    offsets.push_back(out.offsets.empty() ? static_cast<std::uint32_t>(i) : out.offsets[i]);
+  }
+  if (offsets.size() == out.quanta.size()) return;
+  out.quanta.resize(offsets.size());
+  out.offsets = std::move(offsets);
+}
+
+}  // namespace
 
 void EnvironmentSource::convert(RecordBatch& records, QuantaBatch& batch, bool with_bytes) const {
+  batch = {};
+  batch.file = records.file;
+  batch.first_source = records.first_source;
   if (records.unread > 0) {
     if (records.reader) batch.bytes = records.reader->place_of_piece(records.piece);
     return append_unread(records, batch);
   }
   if (records.reader) read_piece(records, with_bytes ? &batch.bytes : nullptr);
-  batch.file = records.file;
-  batch.first_source = records.first_source;
-  batch.counts = {.input_points = records.points.size()};
-  batch.quanta.clear();
-  batch.offsets.clear();
-  batch.classes.clear();
+  batch.counts.input_points = records.points.size();
   note_withheld(records, batch);
   if (shifts_.empty() || !infos_[records.file].quantisation) {
     append_rounded(records, batch);
@@ -378,25 +364,14 @@ void EnvironmentSource::keep_near(const Corridor& corridor, bool trust_bounds) {
 
 /// Counts records that are not read.
 void EnvironmentSource::append_unread(const RecordBatch& records, QuantaBatch& out) const {
-  out.file = records.file;
-  out.first_source = records.first_source;
-  out.quanta.clear();
-  out.offsets.clear();
-  out.classes.clear();
-  out.times.clear();
-  out.turn.reset();
   out.counts = {.input_points = records.unread,
                 .far_points = records.unread,
                 .unread_points = records.unread,
                 .unread_bytes = records.unread_bytes};
   out.whole = {.points = records.unread};
   for (int k = 0; k < 3; ++k) {
-    const auto quantum = [&](double at) {
-      const double whole = std::nearbyint((at - quantisation_.offset[k]) / quantisation_.scale[k]);
-      return static_cast<std::int32_t>(std::clamp(whole, kLeastQuantum, kGreatestQuantum));
-    };
-    out.whole.lo[k] = quantum(records.bounds.lo[k]);
-    out.whole.hi[k] = quantum(records.bounds.hi[k]);
+    out.whole.lo[k] = nearest_int32(quantum_of(quantisation_, k, records.bounds.lo[k]));
+    out.whole.hi[k] = nearest_int32(quantum_of(quantisation_, k, records.bounds.hi[k]));
   }
   const std::optional<Box> reach = reach_of(infos_[out.file].declared_box);
   if (reach && !reach->meets(records.bounds)) out.whole.beyond = records.unread;
@@ -435,19 +410,12 @@ void EnvironmentSource::check_bounds(const RecordBatch& records, const QuantaBat
 /// Leaves out the points that are too far from the path.
 void EnvironmentSource::drop_far(QuantaBatch& out) const {
   const std::size_t count = out.quanta.size();
-  std::size_t kept = 0;
-  std::vector<std::uint32_t> offsets;
   CorridorWalk walk(*corridor_);
-  for (std::size_t i = 0; i < count; ++i) {
+  keep_points(out, [&](std::size_t i) {
     const auto& q = out.quanta[i];
-    if (!walk.holds(position(quantisation_, q[0], q[1], q[2]))) continue;
-    offsets.push_back(out.offsets.empty() ? static_cast<std::uint32_t>(i) : out.offsets[i]);
-    out.quanta[kept++] = out.quanta[i];
-  }
-  out.counts.far_points = count - kept;
-  if (kept == count) return;
-  out.quanta.resize(kept);
-  out.offsets = std::move(offsets);
+    return walk.holds(position(quantisation_, q[0], q[1], q[2]));
+  });
+  out.counts.far_points = count - out.quanta.size();
 }
 
 /// Keeps the classes of the points that were not left out, where one of these has a class.
@@ -466,11 +434,10 @@ void EnvironmentSource::count_cut_off(QuantaBatch& out) const {
   if (!own) return;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto count = [&](std::int64_t end) -> std::uint64_t {
-      const double at = coordinate(*own, static_cast<int>(k), static_cast<std::int32_t>(end));
-      const double rounded =
-          std::nearbyint((at - quantisation_.offset[k]) / quantisation_.scale[k]);
-      const double quantum =
-          shifts_.empty() ? rounded : static_cast<double>(end + shifts_[out.file][k]);
+      const int axis = static_cast<int>(k);
+      const double at = coordinate(*own, axis, static_cast<std::int32_t>(end));
+      const double quantum = shifts_.empty() ? quantum_of(quantisation_, axis, at)
+                                             : static_cast<double>(end + shifts_[out.file][k]);
       if (out.whole.lo[k] != quantum && out.whole.hi[k] != quantum) return 0;
       return static_cast<std::uint64_t>(
           std::ranges::count_if(out.quanta, [&](const auto& q) { return q[k] == quantum; }));
@@ -485,9 +452,7 @@ namespace {
 MetreCube cube_of(const Vec3& p, double edge) {
   MetreCube cube{};
   for (int k = 0; k < 3; ++k) {
-    const double index = std::floor(p[k] / edge);
-    cube[static_cast<std::size_t>(k)] =
-        static_cast<std::int32_t>(std::clamp(index, kLeastQuantum, kGreatestQuantum));
+    cube[static_cast<std::size_t>(k)] = nearest_int32(std::floor(p[k] / edge));
   }
   return cube;
 }
@@ -497,7 +462,6 @@ MetreCube cube_of(const Vec3& p, double edge) {
 /// Counts the records that are withheld, and finds their cubes where they are left out.
 void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& out) const {
   const PointBatch& batch = records.points;
-  out.withheld_cubes.clear();
   for (std::size_t i = 0; i < batch.flags.size(); ++i) {
     if (!batch.is_withheld(i)) continue;
     if (out.counts.withheld_points++ == 0) out.counts.first_withheld = records.first_source + i;
@@ -514,12 +478,7 @@ void EnvironmentSource::note_withheld(const RecordBatch& records, QuantaBatch& o
 void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) const {
   out.quanta = std::move(records.points.quanta);
   if (!options_.keep_withheld && out.counts.withheld_points > 0) {
-    for (std::uint32_t i = 0; i < out.quanta.size(); ++i) {
-      if (records.points.is_withheld(i)) continue;
-      out.quanta[out.offsets.size()] = out.quanta[i];
-      out.offsets.push_back(i);
-    }
-    out.quanta.resize(out.offsets.size());
+    keep_points(out, [&](std::size_t i) { return !records.points.is_withheld(i); });
   }
   const std::size_t file = records.file;
   const Quantisation& own = *infos_[file].quantisation;
@@ -529,8 +488,7 @@ void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) cons
       const int axis = static_cast<int>(k);
       const double before = coordinate(own, axis, q[k]);
       const std::int64_t shifted = q[k] + shifts_[file][k];
-      if (shifted < std::numeric_limits<std::int32_t>::min() ||
-          shifted > std::numeric_limits<std::int32_t>::max()) {
+      if (!std::in_range<std::int32_t>(shifted)) {
         throw InputError(files()[file].string() + ": too far from " + files()[0].string() +
                              " for 32-bit integers of " + format_digits(own.scale[k], 9),
                          Remedy::kScale);
@@ -544,43 +502,39 @@ void EnvironmentSource::append_kept(RecordBatch& records, QuantaBatch& out) cons
 
 void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& out) const {
   const PointBatch& batch = records.points;
-  auto absent = batch.absent.begin();
+  std::vector<std::size_t> dropped;
+  out.quanta.resize(batch.size());
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const Vec3 p = point_of(batch, infos_[records.file], i);
     const bool withheld = leaves_out(batch, i);
     if (withheld || !is_finite(p)) {
-      if (withheld) {
-        // Counted already.
-      } else if (absent != batch.absent.end() && *absent == i) {
+      dropped.push_back(i);
+      if (withheld) continue;  // counted already
+      if (std::ranges::binary_search(batch.absent, i)) {
         ++out.counts.absent_points;
-        ++absent;
-      } else {
-        if (out.counts.non_finite_points++ == 0)
-          out.counts.first_non_finite = records.first_source + i;
-      }
-      if (out.offsets.empty()) {
-        for (std::uint32_t j = 0; j < out.quanta.size(); ++j) out.offsets.push_back(j);
-        out.offsets.reserve(batch.size());
+      } else if (out.counts.non_finite_points++ == 0) {
+        out.counts.first_non_finite = records.first_source + i;
       }
       continue;
     }
-    std::array<std::int32_t, 3> q;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const int axis = static_cast<int>(k);
-      const double quantum =
-          std::nearbyint((p[axis] - quantisation_.offset[k]) / quantisation_.scale[k]);
+    for (int k = 0; k < 3; ++k) {
+      const double quantum = quantum_of(quantisation_, k, p[k]);
       if (quantum < kLeastQuantum || quantum > kGreatestQuantum) {
         refuse_beyond_quanta(records.file);
       }
-      q[k] = static_cast<std::int32_t>(quantum);
-      out.counts.largest_change = std::max(
-          out.counts.largest_change, std::abs(coordinate(quantisation_, axis, q[k]) - p[axis]));
+      const auto q = static_cast<std::int32_t>(quantum);
+      out.quanta[i][static_cast<std::size_t>(k)] = q;
+      out.counts.largest_change =
+          std::max(out.counts.largest_change, std::abs(coordinate(quantisation_, k, q) - p[k]));
     }
-    out.quanta.push_back(q);
-    // Points after the first dropped one need an index of their own; without any dropped point,
-    // offsets stays empty.
-    if (out.quanta.size() <= i) out.offsets.push_back(static_cast<std::uint32_t>(i));
   }
+  if (dropped.empty()) return;
+  auto next = dropped.begin();
+  keep_points(out, [&](std::size_t i) {
+    const bool is_dropped = next != dropped.end() && *next == i;
+    if (is_dropped) ++next;
+    return !is_dropped;
+  });
 }
 
 void EnvironmentSource::refuse_beyond_quanta(std::size_t file) const {
@@ -592,33 +546,33 @@ void EnvironmentSource::refuse_beyond_quanta(std::size_t file) const {
 }
 
 bool EnvironmentPass::next(PassingBatch& batch) {
-  if (failed_) return false;
+  if (failed) return false;
   try {
-    throw_if_stopped(progress_);
-    const auto running = clocks_.measure(Stage::kRead);
-    if (!environment_.next(batch.records)) return false;
+    throw_if_stopped(progress);
+    const auto running = clocks.measure(Stage::kRead);
+    if (!environment.next(batch.records)) return false;
   } catch (...) {
     batch.error = std::current_exception();
-    failed_ = true;
+    failed = true;
   }
   return true;
 }
 
 void EnvironmentPass::read(PassingBatch& batch) const {
-  const auto running = clocks_.measure(Stage::kRead);
-  environment_.convert(batch.records, batch.quanta, files_ != nullptr);
+  const auto running = clocks.measure(Stage::kRead);
+  environment.convert(batch.records, batch.quanta, files != nullptr);
 }
 
 void EnvironmentPass::hash_file(PassingBatch& batch) const {
-  if (files_ == nullptr || batch.error) return;
-  const auto running = clocks_.measure(Stage::kHash);
+  if (files == nullptr || batch.error) return;
+  const auto running = clocks.measure(Stage::kHash);
   const PieceBytes bytes = std::exchange(batch.quanta.bytes, {});
-  if (bytes.count > 0) files_->add(batch.quanta.file, bytes);
+  if (bytes.count > 0) files->add(batch.quanta.file, bytes);
 }
 
 void EnvironmentPass::note(const PassingBatch& batch) const {
   if (batch.error) std::rethrow_exception(batch.error);
-  environment_.note(batch.quanta);
+  environment.note(batch.quanta);
 }
 
 }  // namespace clearway

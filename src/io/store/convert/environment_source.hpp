@@ -9,23 +9,12 @@
 #include "core/trajectory/corridor.hpp"
 #include "core/util/progress.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/store/convert/convert.hpp"
 #include "io/store/convert/input_agreement.hpp"
 #include "io/store/convert/input_files.hpp"
 #include "io/store/convert/quanta_batch.hpp"
 
 namespace clearway {
-
-struct EnvironmentOptions {
-  std::optional<double> scale{};  ///< requested scale of all axes, in metres
-  FileUnit unit{};                ///< unit of inputs that name none
-  FileUnit unit_z{};              ///< unit of all heights, see ConvertOptions::unit_z
-  bool ignore_crs = false;        ///< see ConvertOptions::ignore_crs
-  bool skip_unreadable = false;   ///< whether to leave out files that cannot be read to their end
-  std::vector<std::string> columns{};  ///< columns of texts, see PointReadOptions
-  bool keep_withheld = false;          ///< whether points with the flag `withheld` are kept
-  bool with_times = false;             ///< whether GPS times are read too, where files have them
-  std::filesystem::path temporary_folder = ".";
-};
 
 /// What has to be read of all inputs before their points can be read in order.
 struct FoundInputs {
@@ -39,40 +28,17 @@ struct FoundInputs {
   }
 };
 
-/// What an EnvironmentSource knows of its inputs after it has read them.
-struct ReadState {
-  struct OfFile {
-    std::vector<Message> remarks;
-    std::vector<OriginRun> origins;
-    std::string origins_rest_on;
-
-    template <typename Values>
-    void keep(Values& values) {
-      values.add(remarks, origins, origins_rest_on);
-    }
-  };
-  std::vector<OfFile> files;
-  std::vector<std::uint64_t> points_of_files;
-  ReadCounts counts;
-
-  template <typename Values>
-  void keep(Values& values) {
-    values.add(files, points_of_files, counts);
-  }
-};
-
 /// All inputs of a conversion as one sequence of points in one quantisation
 /// (docs/design/conversion.md). Where inputs have integers, these are kept as read; files of the
 /// same scale are shifted by whole quanta. Other coordinates are rounded to the nearest quantum:
 /// that of files with integers if there are any, otherwise that of a chosen scale.
 class EnvironmentSource {
  public:
-  /// inputs: files and folders, or "-" alone for LAS on standard input. Reads the headers; it also
-  /// reads all points once where files may be skipped, and once where a scale must be chosen.
-  /// found: what an earlier process found in these inputs, so that nothing but headers is read; or
-  /// null. Throws InputError, UsageError and Interrupted.
-  EnvironmentSource(const std::vector<std::filesystem::path>& inputs,
-                    const EnvironmentOptions& options, Progress& progress,
+  /// Reads the headers; it also reads all points once where files may be skipped, and once where a
+  /// scale must be chosen. options: must outlive this object. found: what an earlier process found
+  /// in these inputs, so that nothing but headers is read; or null. Throws InputError, UsageError
+  /// and Interrupted.
+  EnvironmentSource(const ConversionOptions& options, Progress& progress,
                     const FoundInputs* found = nullptr);
   ~EnvironmentSource();
 
@@ -115,10 +81,12 @@ class EnvironmentSource {
   void rewind();
 
   FoundInputs found() const;
-  /// What is known now that all batches were noted.
-  ReadState state() const;
-  /// Takes what an earlier process knew.
-  void restore(const ReadState& state);
+  /// Keeps what is known once all batches were noted, or takes it after a rewind().
+  template <typename Values>
+  void keep(Values& values) {
+    for (CloudInfo& info : infos_) values.add(info.remarks, info.origins, info.origins_rest_on);
+    values.add(points_of_files_, counts_);
+  }
   /// Reads no GPS times from the next rewind() on.
   void leave_out_times() { how_to_read_.with_times = false; }
 
@@ -171,7 +139,7 @@ class EnvironmentSource {
   void drop_far(QuantaBatch& out) const;
   [[noreturn]] void refuse_beyond_quanta(std::size_t file) const;
 
-  EnvironmentOptions options_;
+  const ConversionOptions& options_;
   PointReadOptions how_to_read_;
   InputFiles inputs_;
   std::vector<CloudInfo> infos_;  // declarations of the files

@@ -43,15 +43,15 @@ class Inputs {
     }
   }
 
-  /// The warning where inputs form groups that are far from each other. Two are apart where their
+  /// Warns where inputs form groups that are far from each other. Two are apart where their
   /// gap is many times the size of the larger one. It names an input of the smallest group, and the
   /// nearest of the others.
-  std::optional<Message> far_apart() const {
+  void warn_of_distance(MessageLog& log) const {
     const std::vector<std::size_t> group = groups();
     const std::size_t n = group.size();
     std::vector<std::size_t> members(n);
     for (const std::size_t g : group) ++members[g];
-    if (n == 0 || members[group[0]] == n) return std::nullopt;
+    if (n == 0 || members[group[0]] == n) return;
     std::size_t lone = 0;
     for (std::size_t i = 0; i < n; ++i) {
       if (members[group[i]] <= members[group[lone]]) lone = i;
@@ -64,15 +64,15 @@ class Inputs {
       other = i;
       gap = to_i;
     }
-    return warning("far-apart",
-                   name(lone) + " lies " + format_brief(gap) + " m from " + name(*other) +
-                       ", the nearest of the others: one may be in another frame or unit. Boxes: " +
-                       text_of(boxes_[lone]) + "; " + text_of(boxes_[*other]),
-                   {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}});
+    log.warn("far-apart",
+             name(lone) + " lies " + format_brief(gap) + " m from " + name(*other) +
+                 ", the nearest of the others: one may be in another frame or unit. Boxes: " +
+                 text_of(boxes_[lone]) + "; " + text_of(boxes_[*other]),
+             {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}});
   }
 
-  /// The warning where consecutive sizes differ by a large factor.
-  std::optional<Message> other_size() const {
+  /// Warns where consecutive sizes differ by a large factor.
+  void warn_of_size(MessageLog& log) const {
     std::vector<std::size_t> order;
     for (std::size_t i = 0; i < sizes_.size(); ++i) {
       if (sizes_[i] >= kLeastLength) order.push_back(i);
@@ -82,14 +82,14 @@ class Inputs {
     for (std::size_t i = 1; i < order.size(); ++i) {
       const double small = sizes_[order[i - 1]], large = sizes_[order[i]];
       if (large < kLargeLength || large < kSizeRatio * small) continue;
-      return warning("other-size",
-                     name(order[i]) + " is " + format_brief(large / small) + " times as large as " +
-                         name(order[i - 1]) +
-                         ": one may be in another unit, such as millimetres. Boxes: " +
-                         text_of(boxes_[order[i]]) + "; " + text_of(boxes_[order[i - 1]]),
-                     {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}});
+      log.warn("other-size",
+               name(order[i]) + " is " + format_brief(large / small) + " times as large as " +
+                   name(order[i - 1]) +
+                   ": one may be in another unit, such as millimetres. Boxes: " +
+                   text_of(boxes_[order[i]]) + "; " + text_of(boxes_[order[i - 1]]),
+               {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}});
+      return;
     }
-    return std::nullopt;
   }
 
  private:
@@ -120,20 +120,20 @@ class Inputs {
   std::vector<double> sizes_;
 };
 
-std::optional<Message> without_points(std::span<const FileBox> boxes,
-                                      std::span<const std::filesystem::path> files) {
+void warn_of_empty(std::span<const FileBox> boxes, std::span<const std::filesystem::path> files,
+                   MessageLog& log) {
   std::size_t count = 0;
   std::string names;
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].points > 0) continue;
     if (count++ < kNamed) names += (names.empty() ? "" : ", ") + files[i].string();
   }
-  if (count == 0) return std::nullopt;
+  if (count == 0) return;
   if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-  return warning("no-points",
-                 names + ": no point that can be stored" +
-                     (count == boxes.size() ? ", so nothing can collide with this store" : ""),
-                 {{"files", static_cast<double>(count)}});
+  log.warn("no-points",
+           names + ": no point that can be stored" +
+               (count == boxes.size() ? ", so nothing can collide with this store" : ""),
+           {{"files", static_cast<double>(count)}});
 }
 
 }  // namespace
@@ -166,40 +166,27 @@ std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation
   return common;
 }
 
-std::vector<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
-                                           const Quantisation& quantisation,
-                                           std::span<const std::filesystem::path> files,
-                                           std::span<const CloudInfo> infos) {
-  BoundsWarnings warnings;
-  for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
-    if (boxes[i].beyond == 0) continue;
-    warnings.add(files[i].string(), *infos[i].declared_box,
-                 {boxes[i].points, boxes[i].beyond, box_of(boxes[i], quantisation)});
-  }
-  return warnings.messages();
-}
-
-std::optional<Message> cut_off_points(std::span<const FileBox> boxes,
-                                      std::span<const std::filesystem::path> files,
-                                      std::span<const CloudInfo> infos) {
-  CutOffWarning found;
-  for (std::size_t i = 0; i < boxes.size() && i < infos.size(); ++i) {
+void warn_of_boxes(std::span<const FileBox> boxes, const Quantisation& quantisation,
+                   std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                   MessageLog& log) {
+  warn_of_empty(boxes, files, log);
+  const Inputs inputs(boxes, quantisation, files);
+  inputs.warn_of_distance(log);
+  inputs.warn_of_size(log);
+  BoundsWarnings bounds;
+  CutOffWarning cut_off;
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const FileBox& box = boxes[i];
+    const std::string name = files[i].string();
+    if (box.beyond > 0) {
+      bounds.add(name, *infos[i].declared_box, {box.points, box.beyond, box_of(box, quantisation)});
+    }
     if (!infos[i].quantisation) continue;
     const double* scale = infos[i].quantisation->scale;
-    found.add(files[i].string(), boxes[i].cut_off, {scale[0], scale[1], scale[2]});
+    cut_off.add(name, box.cut_off, {scale[0], scale[1], scale[2]});
   }
-  return found.message();
-}
-
-std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
-                                       const Quantisation& quantisation,
-                                       std::span<const std::filesystem::path> files) {
-  std::vector<Message> out;
-  const Inputs inputs(boxes, quantisation, files);
-  for (auto& found : {without_points(boxes, files), inputs.far_apart(), inputs.other_size()}) {
-    if (found) out.push_back(*found);
-  }
-  return out;
+  for (const Message& message : bounds.messages()) log.add(message);
+  if (const auto message = cut_off.message()) log.add(*message);
 }
 
 }  // namespace clearway

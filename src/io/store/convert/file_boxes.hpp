@@ -12,6 +12,7 @@
 #include "clearway/box.hpp"
 #include "clearway/progress.hpp"
 #include "core/geometry/quantisation.hpp"
+#include "core/messages/messages.hpp"
 #include "io/store/convert/quanta_batch.hpp"
 
 namespace clearway {
@@ -23,9 +24,6 @@ class FileBoxes {
   void add(const QuantaBatch& batch);
   /// The boxes of `files` inputs.
   std::vector<FileBox> boxes(std::size_t files) const;
-
-  /// Takes the boxes of another one.
-  void take(FileBoxes& other) { boxes_ = std::move(other.boxes_); }
 
   template <typename Values>
   void keep(Values& values) {
@@ -43,21 +41,11 @@ Box box_of(const FileBox& box, const Quantisation& quantisation);
 /// The box of all inputs in metres; nullopt where there is no point.
 std::optional<Box> common_box(std::span<const FileBox> boxes, const Quantisation& quantisation);
 
-/// Warnings on inputs with points far beyond the box that their file declares. infos: of each
-/// input.
-std::vector<Message> beyond_declared_boxes(std::span<const FileBox> boxes,
-                                           const Quantisation& quantisation,
-                                           std::span<const std::filesystem::path> files,
-                                           std::span<const CloudInfo> infos);
-
-/// The warning on inputs with points at the ends of their integers; nullopt where there is none.
-std::optional<Message> cut_off_points(std::span<const FileBox> boxes,
-                                      std::span<const std::filesystem::path> files,
-                                      std::span<const CloudInfo> infos);
-
-/// Warnings on inputs that hold no point, lie far from all others, or are far larger than others.
-std::vector<Message> warnings_on_boxes(std::span<const FileBox> boxes,
-                                       const Quantisation& quantisation,
-                                       std::span<const std::filesystem::path> files);
+/// Warns of inputs that hold no point, lie far from all others, or are far larger than others; of
+/// points far beyond the box that their file declares; and of points at the ends of their integers.
+/// infos: of each input.
+void warn_of_boxes(std::span<const FileBox> boxes, const Quantisation& quantisation,
+                   std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                   MessageLog& log);
 
 }  // namespace clearway

@@ -39,59 +39,9 @@ std::optional<std::array<std::int64_t, 3>> whole_shift(const double* offset,
 
 bool has_integers(const CloudInfo& info) { return info.quantisation.has_value(); }
 
-void warn(CommonCrs& common, WarningCode code, const std::string& text) {
-  common.warnings.push_back(warning(code, text));
-}
-
 bool has_unit(const CloudInfo& info) { return info.unit != LengthUnit::kUnknown; }
 
 constexpr const char* kIgnored = "crs-ignored";
-
-/// Refuses a file for this reason, or warns of it where it is to be ignored.
-/// heights: metres of a unit of heights that can be named instead; 0 where that does not help.
-void refuse_or_warn(const std::filesystem::path& file, const std::string& reason,
-                    const std::string& expected, bool ignore, CommonCrs& common,
-                    double heights = 0) {
-  if (!ignore) refuse(file.string(), reason + expected, Remedy::kIgnoreCrs, heights);
-  warn(common, kIgnored, file.string() + ": " + reason + ". The coordinates are taken as they are");
-}
-
-/// Judges what an input says of its own.
-void check_own(const std::filesystem::path& file, const CloudInfo& info, bool ignore,
-               CommonCrs& common) {
-  if (!info.crs_unread.empty()) {
-    refuse_or_warn(file, info.crs_unread + " is not read",
-                   ", expected well-known text, PROJJSON, a PROJ string or a code that PROJ knows",
-                   ignore, common);
-  }
-  if (!info.unit_trouble.empty()) {
-    refuse_or_warn(file, info.unit_trouble,
-                   "; expected metres or feet for all of them. Convert the scan first", ignore,
-                   common);
-  }
-  if (info.unit == LengthUnit::kDegrees) {
-    refuse_or_warn(file, "its coordinate reference system is in degrees",
-                   ", expected lengths; project the scan first", ignore, common);
-  }
-  if (!info.unit_unread.empty() && has_unit(info)) {
-    warn(common, "crs-not-read", file.string() + ": " + info.unit_unread);
-  } else if (!info.unit_unread.empty()) {
-    refuse_or_warn(file, info.unit_unread,
-                   ". So its unit is not known, expected one that is read. --unit names it", ignore,
-                   common);
-  }
-  if (!info.crs_doubt.empty()) {
-    warn(common, "crs-not-read",
-         file.string() + ": " + info.crs_doubt +
-             (has_unit(info) ? "" : ". Its unit is not known, so metres are assumed"));
-  }
-  if (!info.unplaced.empty()) {
-    refuse_or_warn(file, info.unplaced, std::string(kExpectedPlaced), ignore, common);
-  }
-  if (!info.unit_doubt.empty()) {
-    warn(common, "units-contradict", file.string() + ": " + info.unit_doubt);
-  }
-}
 
 LengthUnit environment_unit_of(const FileUnit& unit) {
   for (const LengthUnit known :
@@ -102,54 +52,7 @@ LengthUnit environment_unit_of(const FileUnit& unit) {
                    " m are not read; expected m, ft, ift or us-ft");
 }
 
-/// The inputs' declarations, where inputs that name no unit are given `unit`.
-std::vector<CloudInfo> with_unit(std::span<const std::filesystem::path> files,
-                                 std::span<const CloudInfo> as_read, const FileUnit& unit,
-                                 bool ignore) {
-  std::vector<CloudInfo> infos(as_read.begin(), as_read.end());
-  if (!unit.is_known()) return infos;
-  const LengthUnit given = environment_unit_of(unit);
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    CloudInfo& info = infos[i];
-    if (!has_unit(info) || (info.any_foot && is_foot(unit.metres()))) {
-      info.any_foot = unit.is_any_foot();
-      info.unit = given;
-    }
-    const bool same = info.unit == given || (unit.is_any_foot() && is_foot(metres_of(info.unit)));
-    if (!same && !ignore) {
-      refuse(files[i].string(), "its unit of length is " + to_string(info.unit) + ", but " +
-                                    to_string(given) + " was given; expected the same unit");
-    }
-  }
-  return infos;
-}
-
-/// Caches coordinate reference systems, so that each is parsed only once although many files have
-/// the same.
-class CrsNames {
- public:
-  const ScanCrs& of(const CloudInfo& info) {
-    const std::string& text = info.crs.empty() ? info.crs_wkt : info.crs;
-    const auto known = known_.find(text);
-    if (known != known_.end()) return known->second;
-    return known_[text] = scan_crs_of(text);
-  }
-
- private:
-  std::map<std::string, ScanCrs> known_;
-};
-
 bool names_crs(const CloudInfo& info) { return !info.crs_wkt.empty() || !info.crs.empty(); }
-
-/// Whether both inputs certainly have the same coordinate reference system. GeoTIFF keys give the
-/// code of the horizontal part, so only that is compared where an input has no well-known text.
-bool has_same_crs(const CloudInfo& a, const CloudInfo& b, CrsNames& names) {
-  if (a.crs_wkt == b.crs_wkt && a.crs == b.crs) return true;
-  const ScanCrs &of_a = names.of(a), &of_b = names.of(b);
-  const bool texts = !a.crs_wkt.empty() && !b.crs_wkt.empty();
-  const std::int32_t code = texts ? of_a.epsg : of_a.horizontal_epsg;
-  return code != 0 && code == (texts ? of_b.epsg : of_b.horizontal_epsg);
-}
 
 /// A reference system in words: "ETRS89 / UTM zone 32N, EPSG:25832".
 std::string crs_label(const ScanCrs& crs) {
@@ -159,136 +62,206 @@ std::string crs_label(const ScanCrs& crs) {
   return crs.name == code ? code : crs.name + ", " + code;
 }
 
-/// Chooses the first well-known text that any input has. Warns of inputs in systems other than the
-/// first one's, and notes inputs without any.
-void choose_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                CommonCrs& common) {
-  const auto first = std::ranges::find_if(infos, names_crs);
-  if (first == infos.end()) return;
-  const auto text =
-      std::ranges::find_if(infos, [](const CloudInfo& info) { return !info.crs_wkt.empty(); });
-  if (text != infos.end()) common.wkt = text->crs_wkt;
-  const auto read =
-      std::ranges::find_if(infos, [](const CloudInfo& info) { return !info.crs.empty(); });
-  if (read != infos.end()) common.crs = read->crs;
-  const std::string source = files[static_cast<std::size_t>(first - infos.begin())].string();
-  CrsNames names;
-  std::size_t unnamed = 0;
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    if (!names_crs(infos[i])) {
-      ++unnamed;
-    } else if (!has_same_crs(infos[i], *first, names)) {
-      warn(common, "other-crs",
-           files[i].string() + ": another coordinate reference system (" +
-               crs_label(names.of(infos[i])) + ") than " + source + " (" +
-               crs_label(names.of(*first)) +
-               "). The coordinates are merged as they are, so the scans may not fit together");
+/// Brings the declarations of the inputs together.
+class Agreement {
+ public:
+  Agreement(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+            const ConvertOptions& given)
+      : files_(files), infos_(infos.begin(), infos.end()), given_(given) {}
+
+  CommonCrs find() {
+    if (given_.unit.is_known()) take_given_unit(environment_unit_of(given_.unit));
+    for (std::size_t i = 0; i < infos_.size(); ++i) check_own(i, infos_[i]);
+    choose_unit();
+    if (given_.unit_z.is_known()) {
+      convert_heights();
+    } else {
+      compare_heights();
+    }
+    choose_crs();
+    if (is_foot(metres_of(common_.unit))) {
+      warn("feet", "the coordinates are in feet (" + to_string(common_.unit) +
+                       "): lengths, models and trajectories without a unit of their own are taken "
+                       "in feet too");
+    }
+    return std::move(common_);
+  }
+
+ private:
+  std::string name(std::size_t i) const { return files_[i].string(); }
+
+  void warn(WarningCode code, const std::string& text) {
+    common_.warnings.push_back(warning(code, text));
+  }
+
+  /// Refuses a file for this reason, or warns of it where it is to be ignored; does nothing where
+  /// the reason is empty. heights: metres of a unit of heights that can be named instead; 0 where
+  /// that does not help.
+  void refuse_or_warn(std::size_t i, const std::string& reason, const std::string& expected,
+                      double heights = 0) {
+    if (reason.empty()) return;
+    if (!given_.ignore_crs) refuse(name(i), reason + expected, Remedy::kIgnoreCrs, heights);
+    warn(kIgnored, name(i) + ": " + reason + ". The coordinates are taken as they are");
+  }
+
+  /// Gives its unit to inputs that name none.
+  void take_given_unit(LengthUnit given) {
+    const FileUnit& unit = given_.unit;
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      CloudInfo& info = infos_[i];
+      if (!has_unit(info) || (info.any_foot && is_foot(unit.metres()))) {
+        info.any_foot = unit.is_any_foot();
+        info.unit = given;
+      }
+      const bool same = info.unit == given || (unit.is_any_foot() && is_foot(metres_of(info.unit)));
+      if (same || given_.ignore_crs) continue;
+      refuse(name(i), "its unit of length is " + to_string(info.unit) + ", but " +
+                          to_string(given) + " was given; expected the same unit");
     }
   }
-  if (unnamed == 0) return;
-  common.warnings.push_back(
-      note("no-crs",
-           std::to_string(unnamed) + " of " + std::to_string(infos.size()) +
-               " files name no coordinate reference system. They are taken to "
-               "be in that of " +
-               source,
-           {{"files", static_cast<double>(unnamed)}}));
-}
+
+  /// Judges what an input says of its own.
+  void check_own(std::size_t i, const CloudInfo& info) {
+    common_.is_partly_read = common_.is_partly_read || !info.crs_unread.empty() ||
+                             !info.unit_unread.empty() || !info.crs_doubt.empty();
+    refuse_or_warn(i, info.crs_unread.empty() ? "" : info.crs_unread + " is not read",
+                   ", expected well-known text, PROJJSON, a PROJ string or a code that PROJ knows");
+    refuse_or_warn(i, info.unit_trouble,
+                   "; expected metres or feet for all of them. Convert the scan first");
+    const bool in_degrees = info.unit == LengthUnit::kDegrees;
+    refuse_or_warn(i, in_degrees ? "its coordinate reference system is in degrees" : "",
+                   ", expected lengths; project the scan first");
+    if (!info.unit_unread.empty() && has_unit(info)) {
+      warn("crs-not-read", name(i) + ": " + info.unit_unread);
+    } else {
+      refuse_or_warn(i, info.unit_unread,
+                     ". So its unit is not known, expected one that is read. --unit names it");
+    }
+    if (!info.crs_doubt.empty()) {
+      warn("crs-not-read",
+           name(i) + ": " + info.crs_doubt +
+               (has_unit(info) ? "" : ". Its unit is not known, so metres are assumed"));
+    }
+    refuse_or_warn(i, info.unplaced, std::string(kExpectedPlaced));
+    if (!info.unit_doubt.empty()) warn("units-contradict", name(i) + ": " + info.unit_doubt);
+  }
+
+  /// Takes the unit of the first input that names it.
+  void choose_unit() {
+    // A "ft" in a text file means the foot of another input that says which one it uses.
+    const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
+    auto known = std::ranges::find_if(infos_, has_unit);
+    if (known == infos_.end()) return;
+    if (known->any_foot) {
+      const auto exact = std::ranges::find_if(infos_, says_which);
+      if (exact != infos_.end() && is_foot(metres_of(exact->unit))) known = exact;
+    }
+    common_.unit = known->unit;
+    const std::string first = name(static_cast<std::size_t>(known - infos_.begin()));
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      // An input that names no unit is taken to be in metres.
+      const bool same_foot = infos_[i].any_foot && is_foot(metres_of(common_.unit));
+      const bool agrees = infos_[i].unit == common_.unit || same_foot ||
+                          (!has_unit(infos_[i]) && common_.unit == LengthUnit::kMetre);
+      if (agrees) continue;
+      refuse_or_warn(i, "its unit of length is " + to_string(infos_[i].unit),
+                     ", expected " + to_string(common_.unit) + " as in " + first);
+    }
+  }
+
+  /// Compares the units of heights with that of the other coordinates.
+  void compare_heights() {
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      const double metres = infos_[i].height_unit;
+      if (has_unit(infos_[i]) || metres == 0 || std::abs(metres - 1) <= kSameHeights) continue;
+      warn("units-contradict",
+           name(i) + ": its heights are in " + name_of_length(metres) +
+               ", and no unit of its other coordinates is named. They are taken for metres; name "
+               "another unit where they are in one");
+    }
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      const double metres = infos_[i].height_unit;
+      refuse_or_warn(i, heights_trouble(metres, common_.unit),
+                     "; expected one unit for all of them", metres);
+    }
+  }
+
+  /// Finds how heights in the given unit become those of the other coordinates.
+  void convert_heights() {
+    if (common_.unit == LengthUnit::kDegrees) {
+      throw UsageError(
+          "heights are converted to the unit of the other coordinates, and these are in degrees");
+    }
+    const double plane = metres_of(common_.unit) > 0 ? metres_of(common_.unit) : 1;
+    common_.height_unit = given_.unit_z.metres_in(plane);
+    common_.height_factor = common_.height_unit / plane;
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      const double named = infos_[i].height_unit;
+      if (named == 0 || std::abs(named - common_.height_unit) <= kSameHeights * named) continue;
+      refuse_or_warn(
+          i, "its heights are in " + name_of_length(named),
+          ", but " + name_of_length(common_.height_unit) + " was given; expected the same unit");
+    }
+  }
+
+  /// The system of an input. Each is parsed only once, although many files have the same.
+  const ScanCrs& crs_of(const CloudInfo& info) {
+    const std::string& text = info.crs.empty() ? info.crs_wkt : info.crs;
+    const auto known = systems_.find(text);
+    return known != systems_.end() ? known->second : systems_[text] = scan_crs_of(text);
+  }
+
+  /// Whether both inputs certainly have the same coordinate reference system. GeoTIFF keys give the
+  /// code of the horizontal part, so only that is compared where an input has no well-known text.
+  bool has_same_crs(const CloudInfo& a, const CloudInfo& b) {
+    if (a.crs_wkt == b.crs_wkt && a.crs == b.crs) return true;
+    const bool texts = !a.crs_wkt.empty() && !b.crs_wkt.empty();
+    const auto code = texts ? &ScanCrs::epsg : &ScanCrs::horizontal_epsg;
+    return crs_of(a).*code != 0 && crs_of(a).*code == crs_of(b).*code;
+  }
+
+  /// Chooses the first well-known text that any input has. Warns of inputs in systems other than
+  /// the first one's, and notes inputs without any.
+  void choose_crs() {
+    const auto first = std::ranges::find_if(infos_, names_crs);
+    if (first == infos_.end()) return;
+    const std::string source = name(static_cast<std::size_t>(first - infos_.begin()));
+    std::size_t unnamed = 0;
+    for (std::size_t i = 0; i < infos_.size(); ++i) {
+      const CloudInfo& info = infos_[i];
+      if (common_.wkt.empty()) common_.wkt = info.crs_wkt;
+      if (common_.crs.empty()) common_.crs = info.crs;
+      if (!names_crs(info)) {
+        ++unnamed;
+      } else if (!has_same_crs(info, *first)) {
+        warn("other-crs",
+             name(i) + ": another coordinate reference system (" + crs_label(crs_of(info)) +
+                 ") than " + source + " (" + crs_label(crs_of(*first)) +
+                 "). The coordinates are merged as they are, so the scans may not fit together");
+      }
+    }
+    if (unnamed == 0) return;
+    common_.warnings.push_back(
+        note("no-crs",
+             std::to_string(unnamed) + " of " + std::to_string(infos_.size()) +
+                 " files name no coordinate reference system. They are taken to "
+                 "be in that of " +
+                 source,
+             {{"files", static_cast<double>(unnamed)}}));
+  }
+
+  std::span<const std::filesystem::path> files_;
+  std::vector<CloudInfo> infos_;
+  const ConvertOptions& given_;
+  CommonCrs common_;
+  std::map<std::string, ScanCrs> systems_;
+};
 
 }  // namespace
 
-namespace {
-
-/// The unit of the first input that names it.
-void choose_unit(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                 bool ignore, CommonCrs& common) {
-  // A "ft" in a text file means the foot of another input that says which one it uses.
-  const auto says_which = [](const CloudInfo& info) { return has_unit(info) && !info.any_foot; };
-  auto known = std::find_if(infos.begin(), infos.end(), has_unit);
-  if (known == infos.end()) return;
-  if (known->any_foot) {
-    const auto exact = std::find_if(infos.begin(), infos.end(), says_which);
-    if (exact != infos.end() && is_foot(metres_of(exact->unit))) known = exact;
-  }
-  common.unit = known->unit;
-  const auto& first = files[static_cast<std::size_t>(known - infos.begin())];
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    // An input that names no unit is taken to be in metres.
-    const bool same_foot = infos[i].any_foot && is_foot(metres_of(common.unit));
-    const bool agrees = infos[i].unit == common.unit || same_foot ||
-                        (!has_unit(infos[i]) && common.unit == LengthUnit::kMetre);
-    if (agrees) continue;
-    refuse_or_warn(files[i], "its unit of length is " + to_string(infos[i].unit),
-                   ", expected " + to_string(common.unit) + " as in " + first.string(), ignore,
-                   common);
-  }
-}
-
-/// Compares the units of heights with that of the other coordinates, or with the given one, to
-/// which heights are then converted.
-void choose_heights(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                    const GivenUnits& given, CommonCrs& common) {
-  if (!given.unit_z.is_known()) {
-    for (std::size_t i = 0; i < infos.size(); ++i) {
-      const std::string trouble = heights_trouble(infos[i].height_unit, common.unit);
-      if (trouble.empty()) continue;
-      refuse_or_warn(files[i], trouble, "; expected one unit for all of them", given.ignore_crs,
-                     common, infos[i].height_unit);
-    }
-    return;
-  }
-  if (common.unit == LengthUnit::kDegrees) {
-    throw UsageError(
-        "heights are converted to the unit of the other coordinates, and these are in degrees");
-  }
-  const double plane = metres_of(common.unit) > 0 ? metres_of(common.unit) : 1;
-  common.height_unit = given.unit_z.metres_in(plane);
-  common.height_factor = common.height_unit / plane;
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    const double named = infos[i].height_unit;
-    if (named == 0 || std::abs(named - common.height_unit) <= kSameHeights * named) continue;
-    refuse_or_warn(
-        files[i], "its heights are in " + name_of_length(named),
-        ", but " + name_of_length(common.height_unit) + " was given; expected the same unit",
-        given.ignore_crs, common);
-  }
-}
-
-/// Warns of heights whose unit an input names, while it names none for its other coordinates.
-void warn_of_lone_heights(std::span<const std::filesystem::path> files,
-                          std::span<const CloudInfo> infos, CommonCrs& common) {
-  for (std::size_t i = 0; i < infos.size(); ++i) {
-    const double metres = infos[i].height_unit;
-    if (has_unit(infos[i]) || metres == 0 || std::abs(metres - 1) <= kSameHeights) continue;
-    warn(common, "units-contradict",
-         files[i].string() + ": its heights are in " + name_of_length(metres) +
-             ", and no unit of its other coordinates is named. They are taken for metres; name "
-             "another unit where they are in one");
-  }
-}
-
-}  // namespace
-
-CommonCrs common_crs(std::span<const std::filesystem::path> files,
-                     std::span<const CloudInfo> as_read, const GivenUnits& given) {
-  CommonCrs common;
-  const bool ignore = given.ignore_crs;
-  const std::vector<CloudInfo> infos = with_unit(files, as_read, given.unit, ignore);
-  for (std::size_t i = 0; i < infos.size(); ++i) check_own(files[i], infos[i], ignore, common);
-  common.is_partly_read = std::ranges::any_of(infos, [](const CloudInfo& info) {
-    return !info.crs_unread.empty() || !info.unit_unread.empty() || !info.crs_doubt.empty();
-  });
-  choose_unit(files, infos, ignore, common);
-  if (!given.unit_z.is_known()) warn_of_lone_heights(files, infos, common);
-  choose_heights(files, infos, given, common);
-  choose_crs(files, infos, common);
-  if (common.unit == LengthUnit::kFoot || common.unit == LengthUnit::kUsSurveyFoot) {
-    warn(common, "feet",
-         "the coordinates are in feet (" + to_string(common.unit) +
-             "): lengths, models and trajectories without a unit of their own are taken in feet "
-             "too");
-  }
-  return common;
+CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
+                     const ConvertOptions& given) {
+  return Agreement(files, infos, given).find();
 }
 
 CommonCrs declared_crs(const std::vector<std::filesystem::path>& inputs,
@@ -303,7 +276,7 @@ CommonCrs declared_crs(const std::vector<std::filesystem::path>& inputs,
       if (!options.skip_unreadable) throw;
     }
   }
-  return common_crs(files, infos, {options.unit, options.unit_z, options.ignore_crs});
+  return common_crs(files, infos, options);
 }
 
 bool is_of_ignored_crs(const Message& warning) {
@@ -344,11 +317,12 @@ std::optional<CommonQuanta> common_quanta(std::span<const std::filesystem::path>
 std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> files,
                                          std::span<const CloudInfo> infos,
                                          const Quantisation& quantisation) {
-  const auto floating = std::find_if_not(infos.begin(), infos.end(), has_integers);
-  const auto count = infos.size() - static_cast<std::size_t>(
-                                        std::count_if(infos.begin(), infos.end(), has_integers));
+  const auto count =
+      infos.size() - static_cast<std::size_t>(std::ranges::count_if(infos, has_integers));
   if (count == 0 || count == infos.size()) return std::nullopt;
-  const auto integers = std::find_if(infos.begin(), infos.end(), has_integers);
+  const auto name_of = [&](auto info) {
+    return files[static_cast<std::size_t>(info - infos.begin())].string();
+  };
   const double step = *std::max_element(quantisation.scale, quantisation.scale + 3);
   const bool as_models_are = std::any_of(files.begin(), files.end(), [](const auto& file) {
     return file.extension() == ".ply" || file.extension() == ".PLY";
@@ -357,10 +331,9 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
       step > kCoarseStep || as_models_are, "floating-point-rounded",
       std::to_string(count) + " of " + std::to_string(infos.size()) +
           " files have floating-point coordinates, the first is " +
-          files[static_cast<std::size_t>(floating - infos.begin())].string() +
+          name_of(std::ranges::find_if_not(infos, has_integers)) +
           ". They are rounded to the steps of " +
-          files[static_cast<std::size_t>(integers - infos.begin())].string() + ", " +
-          format_digits(step, 9) +
+          name_of(std::ranges::find_if(infos, has_integers)) + ", " + format_digits(step, 9) +
           (as_models_are ? ". Is one of them the model? It does not belong among the "
                            "scans"
                          : ""),

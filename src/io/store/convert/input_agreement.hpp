@@ -32,17 +32,11 @@ struct CommonCrs {
   std::vector<Message> warnings;
 };
 
-/// What is given about the units of the inputs, see ConvertOptions.
-struct GivenUnits {
-  FileUnit unit, unit_z;
-  bool ignore_crs = false;
-};
-
 /// The unit and CRS of the first input that names them. Degrees, units and heights other than that
 /// one's, and systems that are not read, are refused unless they are to be ignored, which is a
-/// warning. Inputs that name no unit count as metres.
+/// warning. Inputs that name no unit are given ConvertOptions::unit, or count as metres.
 CommonCrs common_crs(std::span<const std::filesystem::path> files, std::span<const CloudInfo> infos,
-                     const GivenUnits& given);
+                     const ConvertOptions& given);
 
 /// The unit and CRS on which scans agree by what their files declare before the first point.
 /// inputs: files and folders. Throws as a conversion with these options does.

@@ -7,8 +7,9 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/messages/messages.hpp"
+#include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
-#include "io/store/convert/input_warnings.hpp"
 
 namespace clearway {
 
@@ -56,6 +57,18 @@ void FileHashes::end_file() {
 
 namespace {
 
+/// The warning on files that were left out; nullopt where there are none.
+std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) {
+  constexpr std::size_t kMostNamed = 10;
+  if (reasons.empty()) return std::nullopt;
+  std::string text = format_count(reasons.size()) +
+                     (reasons.size() == 1 ? " file is left out" : " files are left out");
+  for (std::size_t i = 0; i < reasons.size() && i < kMostNamed; ++i) text += "; " + reasons[i];
+  if (reasons.size() > kMostNamed)
+    text += "; and " + std::to_string(reasons.size() - kMostNamed) + " more";
+  return warning("skipped-files", text, {{"files", static_cast<double>(reasons.size())}});
+}
+
 /// Throws for a pipe, which can be read only once.
 void refuse_pipe(const std::filesystem::path& file) {
   std::error_code unknown;
@@ -71,36 +84,56 @@ void refuse_pipe(const std::filesystem::path& file) {
 
 }  // namespace
 
-InputFiles::InputFiles(const std::vector<std::filesystem::path>& inputs, bool skip_unreadable,
-                       const PointReadOptions& how_to_read, Progress& progress,
-                       const ReadableInputs* readable)
-    : is_stream_(std::find(inputs.begin(), inputs.end(), "-") != inputs.end()) {
-  if (is_stream_ && inputs.size() > 1) {
+ReadableInputs readable_inputs(std::span<const std::filesystem::path> files,
+                               const PointReadOptions& how_to_read, Progress& progress) {
+  ReadableInputs out;
+  PointBatch batch;
+  progress.begin("check", 0, "points");
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    try {
+      const auto reader = open_point_file(files[i], how_to_read);
+      while (reader->read(batch)) {
+        throw_if_stopped(progress);
+        progress.advance(batch.size());
+      }
+      out.numbers.push_back(i);
+    } catch (const InputError& error) {
+      out.skipped.emplace_back(error.what());
+    }
+  }
+  progress.end();
+  if (out.numbers.empty() && !out.skipped.empty()) {
+    throw InputError("none of the " + format_count(files.size()) +
+                     " files can be read, expected one at least; the first: " + out.skipped[0]);
+  }
+  return out;
+}
+
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& all,
+                                            const std::vector<std::uint64_t>& numbers) {
+  std::vector<std::filesystem::path> out;
+  for (const std::uint64_t number : numbers) {
+    if (number >= all.size()) throw InputError("the journal names an input that is not there");
+    out.push_back(all[number]);
+  }
+  return out;
+}
+
+InputFiles::InputFiles(const ConversionOptions& options, const PointReadOptions& how_to_read,
+                       Progress& progress, const ReadableInputs* readable)
+    : is_stream_(std::ranges::find(options.inputs, "-") != options.inputs.end()) {
+  if (is_stream_ && options.inputs.size() > 1) {
     throw UsageError("standard input (-) cannot be combined with other inputs");
   }
   if (is_stream_) {
     files_ = read_files_ = {"-"};
     return;
   }
-  files_ = list_point_files(inputs, &folder_remarks_);
-  std::for_each(files_.begin(), files_.end(), refuse_pipe);
-  if (skip_unreadable && readable != nullptr) {
-    readable_ = *readable;
-    std::vector<std::filesystem::path> kept;
-    for (const std::uint64_t number : readable_.numbers) {
-      if (number >= files_.size()) throw InputError("the journal names an input that is not there");
-      kept.push_back(files_[number]);
-    }
-    files_ = std::move(kept);
-  } else if (skip_unreadable) {
-    ReadableFiles found = readable_files(files_, how_to_read, progress);
-    auto next = files_.begin();
-    for (const std::filesystem::path& file : found.files) {
-      next = std::find(next, files_.end(), file);
-      readable_.numbers.push_back(static_cast<std::uint64_t>(next++ - files_.begin()));
-    }
-    files_ = std::move(found.files);
-    readable_.skipped = std::move(found.reasons);
+  files_ = list_point_files(options.inputs, &folder_remarks_);
+  std::ranges::for_each(files_, refuse_pipe);
+  if (options.skip_unreadable) {
+    readable_ = readable != nullptr ? *readable : readable_inputs(files_, how_to_read, progress);
+    files_ = files_of(files_, readable_.numbers);
   }
   read_files_ = with_pose_files(files_);
   std::transform(read_files_.begin(), read_files_.end(), std::back_inserter(states_), state_of);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "io/files/file.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/point_reader.hpp"
+#include "io/store/convert/convert.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -61,10 +63,10 @@ class FileHashes {
   std::optional<Xxh64Stream> hash_;
 };
 
-/// Which files of a conversion can be read, and why others are left out.
+/// Which files of a list can be read, and why others are left out.
 struct ReadableInputs {
   std::vector<std::uint64_t> numbers;  ///< of the files that can be read, among all, ascending
-  std::vector<std::string> skipped;
+  std::vector<std::string> skipped;    ///< why files are left out, with their names
 
   template <typename Values>
   void keep(Values& values) {
@@ -72,16 +74,22 @@ struct ReadableInputs {
   }
 };
 
+/// Reads every file to its end. Throws InputError where none can be read, and Interrupted.
+ReadableInputs readable_inputs(std::span<const std::filesystem::path> files,
+                               const PointReadOptions& how_to_read, Progress& progress);
+
+/// The files with these numbers. Throws InputError where there is no such file.
+std::vector<std::filesystem::path> files_of(const std::vector<std::filesystem::path>& all,
+                                            const std::vector<std::uint64_t>& numbers);
+
 /// The files of a conversion in the order of its points, and their states when it began.
 class InputFiles {
  public:
-  /// inputs: files and folders, or "-" alone for standard input. With `skip_unreadable`, all of
-  /// them are read once. Throws InputError, UsageError and Interrupted.
-  /// readable: which of them an earlier process found to be readable, so that none has to be read
-  /// for it; or null.
-  InputFiles(const std::vector<std::filesystem::path>& inputs, bool skip_unreadable,
-             const PointReadOptions& how_to_read, Progress& progress,
-             const ReadableInputs* readable = nullptr);
+  /// Where unreadable files are to be skipped, all of them are read once. readable: which of them
+  /// an earlier process found to be readable, so that none has to be read for it; or null. Throws
+  /// InputError, UsageError and Interrupted.
+  InputFiles(const ConversionOptions& options, const PointReadOptions& how_to_read,
+             Progress& progress, const ReadableInputs* readable = nullptr);
 
   bool are_a_stream() const { return is_stream_; }
   const std::vector<std::filesystem::path>& files() const { return files_; }  ///< "-" for a stream

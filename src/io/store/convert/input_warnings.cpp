@@ -8,41 +8,6 @@
 
 namespace clearway {
 
-ReadableFiles readable_files(std::span<const std::filesystem::path> files,
-                             const PointReadOptions& how_to_read, Progress& progress) {
-  ReadableFiles out;
-  PointBatch batch;
-  progress.begin("check", 0, "points");
-  for (const std::filesystem::path& file : files) {
-    try {
-      const auto reader = open_point_file(file, how_to_read);
-      while (reader->read(batch)) {
-        throw_if_stopped(progress);
-        progress.advance(batch.size());
-      }
-      out.files.push_back(file);
-    } catch (const InputError& error) {
-      out.reasons.emplace_back(error.what());
-    }
-  }
-  progress.end();
-  if (out.files.empty() && !out.reasons.empty()) {
-    throw InputError("none of the " + format_count(files.size()) +
-                     " files can be read, expected one at least; the first: " + out.reasons[0]);
-  }
-  return out;
-}
-
-std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) {
-  constexpr std::size_t kNamed = 10;
-  if (reasons.empty()) return std::nullopt;
-  std::string text = format_count(reasons.size()) +
-                     (reasons.size() == 1 ? " file is left out" : " files are left out");
-  for (std::size_t i = 0; i < reasons.size() && i < kNamed; ++i) text += "; " + reasons[i];
-  if (reasons.size() > kNamed) text += "; and " + std::to_string(reasons.size() - kNamed) + " more";
-  return warning("skipped-files", text, {{"files", static_cast<double>(reasons.size())}});
-}
-
 namespace {
 
 // Greatest share of withheld points that causes no more than a note.
@@ -101,19 +66,8 @@ std::optional<Box> warn_of_inputs(const EnvironmentSource& environment, const Fi
   const std::vector<FileBox> of_files = boxes.boxes(files.size());
   for (Message& remark : environment.remarks()) log.add(std::move(remark));
   warn_of_missing(environment, metadata, log);
-  for (Message& warning : warnings_on_boxes(of_files, metadata.quantisation, files)) {
-    log.add(std::move(warning));
-  }
-  for (Message& warning :
-       beyond_declared_boxes(of_files, metadata.quantisation, files, environment.infos())) {
-    log.add(std::move(warning));
-  }
-  if (auto warning = cut_off_points(of_files, files, environment.infos())) {
-    log.add(std::move(*warning));
-  }
-  if (auto warning = warning_on_same_scans(files, metadata.sources, of_files)) {
-    log.add(std::move(*warning));
-  }
+  warn_of_boxes(of_files, metadata.quantisation, files, environment.infos(), log);
+  warn_of_same_scans(files, metadata.sources, of_files, log);
   return common_box(of_files, metadata.quantisation);
 }
 

@@ -19,19 +19,6 @@
 
 namespace clearway {
 
-/// The files of a list that can be read, and why the others cannot.
-struct ReadableFiles {
-  std::vector<std::filesystem::path> files;
-  std::vector<std::string> reasons;  ///< why files were left out, with their names
-};
-
-/// Reads every file to its end. Throws InputError where none can be read, and Interrupted.
-ReadableFiles readable_files(std::span<const std::filesystem::path> files,
-                             const PointReadOptions& how_to_read, Progress& progress);
-
-/// The warning on files that were left out; nullopt where there are none.
-std::optional<Message> warning_on_skipped(std::span<const std::string> reasons);
-
 /// Logs what the counting pass noticed: the files' own remarks, points left out, and files that
 /// have no points, are far apart, have other sizes or were named twice. Returns the box of all
 /// points.

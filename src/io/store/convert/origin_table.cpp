@@ -294,14 +294,7 @@ void add_origins_of_inputs(const EnvironmentSource& environment, OriginTable& ta
 namespace clearway {
 namespace {
 
-/// A row of a file of origins.
-struct OriginRow {
-  std::uint64_t line;
-  std::uint64_t first;
-  Vec3 origin;
-};
-
-/// Calls `use` for each row of a file of origins, whose form is checked.
+/// Calls `use(table, first, origin)` for each row of a file of origins, whose form is checked.
 template <typename Use>
 void for_each_origin(const std::filesystem::path& path, Use use) {
   constexpr std::string_view kColumns[] = {"first", "x", "y", "z"};
@@ -333,7 +326,7 @@ void for_each_origin(const std::filesystem::path& path, Use use) {
           "ends without a line break, so that its last number may be cut off; expected one");
     }
     before = first;
-    use(table.name(), OriginRow{table.input().line(), *first, origin});
+    use(table, *first, origin);
   }
   if (!before) refuse(table.name(), "holds no origin; expected one at least");
 }
@@ -342,17 +335,16 @@ void for_each_origin(const std::filesystem::path& path, Use use) {
 
 void add_origins_of_file(const std::filesystem::path& path, OriginTable& table) {
   table.rest_on("a file of origins");
-  for_each_origin(path, [&](const std::string& name, const OriginRow& row) {
-    table.add(row.first, row.origin, name);
+  for_each_origin(path, [&](const TextTable& from, std::uint64_t first, const Vec3& origin) {
+    table.add(first, origin, from.name());
   });
 }
 
 void refuse_origins_beyond(const std::filesystem::path& path, std::uint64_t input_points) {
-  for_each_origin(path, [&](const std::string& name, const OriginRow& row) {
-    if (row.first == 0 || row.first < input_points) return;
-    refuse_line(name, row.line,
-                "starts at source index " + std::to_string(row.first) + ", but the inputs have " +
-                    std::to_string(input_points) + " points; is it the file of other scans?");
+  for_each_origin(path, [&](const TextTable& from, std::uint64_t first, const Vec3&) {
+    if (first == 0 || first < input_points) return;
+    from.refuse_here("starts at source index " + std::to_string(first) + ", but the inputs have " +
+                     std::to_string(input_points) + " points; is it the file of other scans?");
   });
 }
 

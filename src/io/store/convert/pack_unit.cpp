@@ -100,39 +100,24 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   return cell;
 }
 
-/// The sizes of the buckets below a unit's node, whose points it divides by the planes of the tree.
-class UnitBuckets {
- public:
-  UnitBuckets(Unit& unit, const SplitTree& tree, const Lattice& lattice)
-      : unit_(unit), tree_(tree), lattice_(lattice) {}
-
-  std::vector<std::span<BucketPoint>> part(std::uint32_t node) {
-    part(node, unit_.points());
-    return std::move(buckets_);
+/// Divides the points below a node by the planes of the tree, and appends its buckets.
+void add_buckets(const Unit& unit, const SplitTree& tree, const Lattice& lattice,
+                 std::uint32_t node, std::span<BucketPoint> points,
+                 std::vector<std::span<BucketPoint>>& buckets) {
+  const SplitNode& split = tree.nodes()[node];
+  if (split.right == 0) {
+    buckets.push_back(points);
+    return;
   }
-
- private:
-  void part(std::uint32_t node, std::span<BucketPoint> points) {
-    const SplitNode& split = tree_.nodes()[node];
-    if (split.right == 0) {
-      buckets_.push_back(points);
-      return;
-    }
-    const auto middle =
-        std::stable_partition(points.begin(), points.end(), [&](const BucketPoint& p) {
-          const LatticePoint at = lattice_({p.q[0], p.q[1], p.q[2]}, unit_.source(p));
-          return at[static_cast<std::size_t>(split.axis)] < split.plane;
-        });
-    const auto left = static_cast<std::size_t>(middle - points.begin());
-    part(node + 1, points.first(left));
-    part(split.right, points.subspan(left));
-  }
-
-  Unit& unit_;
-  const SplitTree& tree_;
-  const Lattice& lattice_;
-  std::vector<std::span<BucketPoint>> buckets_;
-};
+  const auto middle =
+      std::stable_partition(points.begin(), points.end(), [&](const BucketPoint& p) {
+        const LatticePoint at = lattice({p.q[0], p.q[1], p.q[2]}, unit.source(p));
+        return at[static_cast<std::size_t>(split.axis)] < split.plane;
+      });
+  const auto left = static_cast<std::size_t>(middle - points.begin());
+  add_buckets(unit, tree, lattice, node + 1, points.first(left), buckets);
+  add_buckets(unit, tree, lattice, split.right, points.subspan(left), buckets);
+}
 
 }  // namespace
 
@@ -156,8 +141,9 @@ OrderedUnit::OrderedUnit(Distribution& distribution, std::size_t unit, const Spl
   const std::uint32_t cell_points = metadata.cell_points;
   Unit& loaded = state_->unit;
   UnitBuffers::Buffer scratch = buffers.take();
-  for (const std::span<BucketPoint> bucket :
-       UnitBuckets(loaded, tree, lattice).part(tree.units()[unit])) {
+  std::vector<std::span<BucketPoint>> buckets;
+  add_buckets(loaded, tree, lattice, tree.units()[unit], loaded.points(), buckets);
+  for (const std::span<BucketPoint> bucket : buckets) {
     const auto first = static_cast<std::size_t>(bucket.data() - loaded.points().data());
     order_bucket(bucket, {scratch.get() + first, bucket.size()}, cell_points,
                  metadata.quantisation.scale, clocks);

@@ -39,17 +39,16 @@ std::string range_text(double first, double last) {
   return "from " + seconds_text(first) + " to " + seconds_text(last) + " s";
 }
 
-std::string name_of(GpsTimes kind) {
-  switch (kind) {
-    case GpsTimes::kWeekSeconds:
-      return "seconds of the GPS week";
-    case GpsTimes::kAdjusted:
-      return "adjusted standard GPS time";
-    case GpsTimes::kNone:
-      break;
-  }
-  return "no GPS times";
-}
+/// A way to count seconds, as reports and as messages name it.
+struct NamedClock {
+  const char *key, *text;
+};
+
+constexpr NamedClock kClocks[] = {{"week-seconds", "seconds of the GPS week"},
+                                  {"adjusted", "adjusted standard GPS time"},
+                                  {"standard", "GPS time, seconds since 1980-01-06"}};
+
+const NamedClock& clock_of(GpsTimes kind) { return kClocks[kind == GpsTimes::kAdjusted ? 1 : 0]; }
 
 /// Reads a path. Matrices that scale or shear stay refused whatever the caller does, since a
 /// scanner does not, so no error offers to accept them.
@@ -92,14 +91,12 @@ constexpr KnownShift kKnownShifts[] = {
 
 PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource& environment,
                          OriginTable& table, MessageLog& log)
-    : table_(table),
+    : environment_(environment),
+      table_(table),
       name_(options.origins_path.string()),
-      quantisation_(environment.quantisation()),
       crs_wkt_(environment.crs_wkt()),
       unit_(environment.unit()),
       files_(environment.files().size()) {
-  for (const CloudInfo& info : environment.infos()) kinds_.push_back(info.gps_times);
-  for (const auto& file : environment.files()) names_.push_back(file.string());
   const TrajectoryOptions how = reading_of_paths(options, environment.crs().crs, unit_);
   const double metres = how.environment_unit;
   TrajectoryFile file = read_rigid_path(options.origins_path, how);
@@ -119,19 +116,22 @@ PathOrigins::PathOrigins(const ConvertOptions& options, const EnvironmentSource&
                         Remedy::kMoreMemory, 8 * static_cast<double>(path_->bytes()));
   }
   if (path_->first() >= 0 && path_->last() <= 2 * kWeek) {
-    clock_ = Clock::kWeekSeconds;
+    clock_ = kWeekSeconds;
   } else if (path_->last() < kAdjustment) {
-    clock_ = Clock::kAdjusted;
+    clock_ = kAdjusted;
   }
-  const auto counts_weeks = [](GpsTimes kind) { return kind == GpsTimes::kWeekSeconds; };
   const double spans = path_->last() - path_->first();
-  const bool across =
-      clock_ == Clock::kWeekSeconds || std::any_of(kinds_.begin(), kinds_.end(), counts_weeks);
-  if (across && spans > kWeek) {
+  if (has_week_seconds() && spans > kWeek) {
     refuse(name_, "its times span " + seconds_text(spans) +
                       " s, which is more than a week, so seconds of the GPS week do not say where "
                       "on the path a point was measured; expected the path of one recording");
   }
+}
+
+/// Whether the path or a file counts seconds of the GPS week.
+bool PathOrigins::has_week_seconds() const {
+  return clock_ == kWeekSeconds || std::ranges::count(environment_.infos(), GpsTimes::kWeekSeconds,
+                                                      &CloudInfo::gps_times) > 0;
 }
 
 /// Whether a time of a file with this kind of times cannot be what the header says.
@@ -139,7 +139,7 @@ bool PathOrigins::contradicts(GpsTimes kind, double time) const {
   const bool within_week = time >= 0 && time <= kWeek;
   if (kind == GpsTimes::kWeekSeconds) return !within_week;
   // Adjusted time was within a week from 0 in September 2011.
-  return within_week && clock_ == Clock::kWeekSeconds;
+  return within_week && clock_ == kWeekSeconds;
 }
 
 /// The seconds to add to the time of a point for the time on the path.
@@ -154,17 +154,18 @@ double PathOrigins::shift_for(GpsTimes kind, double time) const {
   };
   if (kind == GpsTimes::kWeekSeconds) {
     // The path may have counted on beyond the end of the week, or count from another epoch.
-    const double epoch = clock_ == Clock::kAdjusted ? -kAdjustment : 0;
+    const double epoch = clock_ == kAdjusted ? -kAdjustment : 0;
     return nearest(epoch + kWeek * std::ceil((first - epoch - time) / kWeek));
   }
-  if (clock_ == Clock::kStandard) return kAdjustment;
-  if (clock_ == Clock::kAdjusted) return 0;
+  if (clock_ == kStandard) return kAdjustment;
+  if (clock_ == kAdjusted) return 0;
   return nearest(kAdjustment - kWeek * std::floor((time + kAdjustment - first) / kWeek));
 }
 
 PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
   OfBatch out;
-  const GpsTimes kind = kinds_[batch.file];
+  out.points = batch.quanta.size();
+  const GpsTimes kind = kind_of(batch.file);
   if (batch.times.empty()) {
     if (batch.counts.input_points > 0) out.runs.push_back({batch.first_source, std::nullopt});
     return out;
@@ -177,14 +178,17 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
     const double time = batch.times[i];
     std::optional<OriginQuanta> origin;
     if (std::isfinite(time)) {
-      out.note_time(time, contradicts(kind, time));
+      ++out.with_time;
+      out.contradicting += contradicts(kind, time) ? 1 : 0;
+      out.first = std::min(out.first, time);
+      out.last = std::max(out.last, time);
       const double shift = shift_for(kind, time);
       const TimedPath::Place place = path_->at(time + shift, step);
-      out.note_place(place.where);
+      ++out.places[static_cast<std::size_t>(place.where)];
       if (place.where == TimedPath::Where::kOnPath) {
         if (shift != added) out.shifts.insert(shift);
         added = shift;
-        origin = quanta_of_origin(quantisation_, place.position, name_);
+        origin = quanta_of_origin(environment_.quantisation(), place.position, name_);
       }
     } else {
       ++out.not_finite;
@@ -196,56 +200,22 @@ PathOrigins::OfBatch PathOrigins::origins_of(const QuantaBatch& batch) const {
   return out;
 }
 
-void PathOrigins::OfBatch::note_time(double time, bool contradicts) {
-  ++with_time;
-  contradicting += contradicts ? 1 : 0;
-  first = std::min(first, time);
-  last = std::max(last, time);
-}
-
-void PathOrigins::OfBatch::note_place(TimedPath::Where where) {
-  using Where = TimedPath::Where;
-  ++(where == Where::kOnPath   ? found
-     : where == Where::kBefore ? before
-     : where == Where::kAfter  ? after
-                               : in_gaps);
-}
-
-void PathOrigins::OfBatch::add(const OfBatch& other) {
+void PathOrigins::Sums::add(const Sums& other) {
+  points += other.points;
   with_time += other.with_time;
   not_finite += other.not_finite;
   contradicting += other.contradicting;
-  before += other.before;
-  after += other.after;
-  in_gaps += other.in_gaps;
-  found += other.found;
+  for (std::size_t i = 0; i < places.size(); ++i) places[i] += other.places[i];
   first = std::min(first, other.first);
   last = std::max(last, other.last);
   shifts.insert(other.shifts.begin(), other.shifts.end());
 }
 
 void PathOrigins::add(const QuantaBatch& batch, const OfBatch& origins) {
-  OfFile& file = files_[batch.file];
-  file.points += batch.quanta.size();
-  file.with_time += origins.with_time;
-  file.first = std::min(file.first, origins.first);
-  file.last = std::max(file.last, origins.last);
-  all_.add(origins);
+  files_[batch.file].add(origins);
   for (const OfBatch::Run& run : origins.runs) {
-    table_.add_quanta(run.first, run.origin, names_[batch.file]);
+    table_.add_quanta(run.first, run.origin, name_of(batch.file));
   }
-}
-
-std::string PathOrigins::clock_text() const {
-  switch (clock_) {
-    case Clock::kWeekSeconds:
-      return name_of(GpsTimes::kWeekSeconds);
-    case Clock::kAdjusted:
-      return name_of(GpsTimes::kAdjusted);
-    case Clock::kStandard:
-      break;
-  }
-  return "GPS time, seconds since 1980-01-06";
 }
 
 /// The range of the points' times and what they are by the headers: "from 3.000 to 9.000 s
@@ -254,18 +224,17 @@ std::string PathOrigins::times_of_points() const {
   std::vector<std::string> texts;
   std::size_t all = 0;
   for (const GpsTimes kind : {GpsTimes::kWeekSeconds, GpsTimes::kAdjusted}) {
-    OfFile times;
+    Sums times;
     std::size_t files = 0;
-    for (std::size_t i = 0; i < kinds_.size(); ++i) {
-      if (kinds_[i] != kind || files_[i].with_time == 0) continue;
+    for (std::size_t i = 0; i < files_.size(); ++i) {
+      if (kind_of(i) != kind || files_[i].with_time == 0) continue;
       ++files;
-      times.first = std::min(times.first, files_[i].first);
-      times.last = std::max(times.last, files_[i].last);
+      times.add(files_[i]);
     }
     all += files;
     if (files == 0) continue;
     texts.push_back((files < all ? "and in others " : "") + range_text(times.first, times.last) +
-                    " (" + name_of(kind) + ", by the header" + (files > 1 ? "s)" : ")"));
+                    " (" + clock_of(kind).text + ", by the header" + (files > 1 ? "s)" : ")"));
   }
   return texts.size() < 2 ? texts.front() : texts[0] + " " + texts[1];
 }
@@ -273,13 +242,10 @@ std::string PathOrigins::times_of_points() const {
 /// What would make the ranges of times overlap, where a known difference of clocks does, or that
 /// none is known.
 std::string PathOrigins::advice(double first, double last) const {
-  const bool weeks =
-      clock_ == Clock::kWeekSeconds ||
-      std::find(kinds_.begin(), kinds_.end(), GpsTimes::kWeekSeconds) != kinds_.end();
   const double apart = (first + last) / 2 - (path_->first() + path_->last()) / 2;
   for (const bool by_weeks : {false, true}) {
     for (const KnownShift& known : kKnownShifts) {
-      if (by_weeks && known.seconds != 0 && !weeks) continue;
+      if (by_weeks && known.seconds != 0 && !has_week_seconds()) continue;
       const double more = by_weeks ? kWeek * std::round((apart - known.seconds) / kWeek) : 0;
       const double shift = known.seconds + more;
       const bool overlap = path_->first() + shift <= last && path_->last() + shift >= first;
@@ -301,11 +267,11 @@ std::string PathOrigins::advice(double first, double last) const {
 
 void PathOrigins::refuse_same_times() const {
   for (std::size_t i = 0; i < files_.size(); ++i) {
-    const OfFile& file = files_[i];
+    const Sums& file = files_[i];
     const std::uint64_t most = file.first == 0 ? 1 : kMoreThanAPulse;
     if (file.with_time <= most || file.first != file.last) continue;
     refuse(
-        names_[i],
+        name_of(i),
         "all " + format_count(file.with_time) + " points have the GPS time " +
             seconds_text(file.first) +
             " s; expected the times at which they were measured, because the origins on the path "
@@ -316,7 +282,7 @@ void PathOrigins::refuse_same_times() const {
 void PathOrigins::refuse_several_weeks() const {
   std::set<double> weeks = all_.shifts;
   for (const double shift : {-kWeek, 0.0, kWeek}) weeks.erase(shift);
-  if (clock_ != Clock::kWeekSeconds || weeks.size() < 2) return;
+  if (clock_ != kWeekSeconds || weeks.size() < 2) return;
   refuse(name_, "its times are seconds of the GPS week, and the points that match them are of " +
                     format_count(weeks.size()) + " weeks; expected the points of one recording");
 }
@@ -332,8 +298,9 @@ std::string PathOrigins::shifts_text() const {
          " s are added to those of the points, which is exact by the definition of these times";
 }
 
-OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, MessageLog& log) const {
-  if (environment.crs_wkt() != crs_wkt_ || environment.unit() != unit_) {
+OriginsPathReport PathOrigins::finish(MessageLog& log) {
+  for (const Sums& file : files_) all_.add(file);
+  if (environment_.crs_wkt() != crs_wkt_ || environment_.unit() != unit_) {
     refuse(name_,
            "was read before the coordinate reference system of the points was known, because that "
            "comes after them in the stream; expected the scan as a file");
@@ -347,43 +314,40 @@ OriginsPathReport PathOrigins::finish(const EnvironmentSource& environment, Mess
   refuse_same_times();
   const std::string times = "the GPS times of the points go " + times_of_points() +
                             ", those of the path " + range_text(path_->first(), path_->last()) +
-                            " (taken for " + clock_text() + "). ";
-  if (all_.found == 0) {
+                            " (taken for " + kClocks[clock_].text + "). ";
+  if (all_.at(TimedPath::Where::kOnPath) == 0) {
     refuse(name_, "gives no point an origin: " + times + advice(all_.first, all_.last));
   }
   refuse_several_weeks();
   log.note(times + shifts_text());
-  warn(log);
-  return report();
+  const OriginsPathReport found = report();
+  warn(found, log);
+  return found;
 }
 
 OriginsPathReport PathOrigins::report() const {
   OriginsPathReport out;
   std::set<GpsTimes> kinds;
   for (std::size_t i = 0; i < files_.size(); ++i) {
-    if (files_[i].with_time > 0) kinds.insert(kinds_[i]);
+    if (files_[i].with_time > 0) kinds.insert(kind_of(i));
     out.without_time += files_[i].points - files_[i].with_time;
   }
-  out.point_clock = kinds.size() > 1                      ? "mixed"
-                    : kinds.contains(GpsTimes::kAdjusted) ? "adjusted"
-                                                          : "week-seconds";
-  out.path_clock = clock_ == Clock::kWeekSeconds ? "week-seconds"
-                   : clock_ == Clock::kAdjusted  ? "adjusted"
-                                                 : "standard";
+  out.point_clock = kinds.size() > 1 ? "mixed" : clock_of(*kinds.begin()).key;
+  out.path_clock = kClocks[clock_].key;
   out.first_point = all_.first;
   out.last_point = all_.last;
   out.first_pose = path_->first();
   out.last_pose = path_->last();
   out.shifts.assign(all_.shifts.begin(), all_.shifts.end());
-  out.before = all_.before;
-  out.after = all_.after;
-  out.in_gaps = all_.in_gaps;
+  out.before = all_.at(TimedPath::Where::kBefore);
+  out.after = all_.at(TimedPath::Where::kAfter);
+  out.in_gaps = all_.at(TimedPath::Where::kInGap);
   return out;
 }
 
-void PathOrigins::warn(MessageLog& log) const {
+void PathOrigins::warn(const OriginsPathReport& found, MessageLog& log) const {
   std::uint64_t without = 0, files = 0;
-  for (const OfFile& file : files_) {
+  for (const Sums& file : files_) {
     if (file.points == 0 || file.with_time > 0) continue;
     ++files;
     without += file.points;
@@ -409,22 +373,23 @@ void PathOrigins::warn(MessageLog& log) const {
             "with the path as they are",
         {{"points", static_cast<double>(all_.contradicting)}});
   }
-  const std::uint64_t outside = all_.before + all_.after + all_.in_gaps;
+  const std::uint64_t outside = found.before + found.after + found.in_gaps;
   if (outside == 0) return;
   log.warn(
       "origins-path-gap",
       format_count(outside) + " of " + format_count(all_.with_time) +
           " points with a GPS time have no origin, because the path does not say where the "
           "scanner was: " +
-          format_count(all_.before) + " are from before its first pose, " +
-          format_count(all_.after) + " from after its last one, and " + format_count(all_.in_gaps) +
-          " from between poses more than " + format_brief(TimedPath::kLongestStep) + " s apart" +
+          format_count(found.before) + " are from before its first pose, " +
+          format_count(found.after) + " from after its last one, and " +
+          format_count(found.in_gaps) + " from between poses more than " +
+          format_brief(TimedPath::kLongestStep) + " s apart" +
           (path_->gaps() > 0 ? " (the path has " + counted(path_->gaps(), "such gap") +
                                    ", the longest of " + format_brief(path_->longest_gap()) + " s)"
                              : ""),
-      {{"before", static_cast<double>(all_.before)},
-       {"after", static_cast<double>(all_.after)},
-       {"in_gaps", static_cast<double>(all_.in_gaps)},
+      {{"before", static_cast<double>(found.before)},
+       {"after", static_cast<double>(found.after)},
+       {"in_gaps", static_cast<double>(found.in_gaps)},
        {"gaps", static_cast<double>(path_->gaps())},
        {"longest_gap", path_->longest_gap()}});
 }

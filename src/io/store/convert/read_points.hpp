@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_pipeline.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,6 +25,16 @@ namespace clearway {
 inline constexpr double kLeastQuantum = std::numeric_limits<std::int32_t>::min();
 inline constexpr double kGreatestQuantum = std::numeric_limits<std::int32_t>::max();
 
+/// The whole number of steps on an axis that is nearest to a coordinate.
+inline double quantum_of(const Quantisation& quantisation, int axis, double at) {
+  return std::nearbyint((at - quantisation.offset[axis]) / quantisation.scale[axis]);
+}
+
+/// The 32-bit integer that is nearest to a whole number.
+inline std::int32_t nearest_int32(double whole) {
+  return static_cast<std::int32_t>(std::clamp(whole, kLeastQuantum, kGreatestQuantum));
+}
+
 inline bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -44,19 +55,13 @@ struct PassingBatch {
 };
 
 /// One reading of the environment, from its current position to its end.
-class EnvironmentPass {
- public:
-  /// files: hashes the files that are read in pieces, or is null.
-  EnvironmentPass(EnvironmentSource& environment, int threads, FileHashes* files,
-                  StageClocks& clocks, const Progress& progress)
-      : environment_(environment),
-        threads_(threads),
-        files_(files),
-        clocks_(clocks),
-        progress_(progress) {}
-
-  StageClocks& clocks() const { return clocks_; }
-  std::size_t batches_in_flight() const { return static_cast<std::size_t>(threads_); }
+struct EnvironmentPass {
+  EnvironmentSource& environment;
+  int threads;
+  FileHashes* files;  ///< hashes the files that are read in pieces, or is null
+  StageClocks& clocks;
+  const Progress& progress;
+  bool failed = false;
 
   /// Takes the next batch, in order; returns false at the end.
   bool next(PassingBatch& batch);
@@ -71,20 +76,11 @@ class EnvironmentPass {
       batch.error = std::current_exception();
     }
   }
+  void read(PassingBatch& batch) const;
   /// Hashes the bytes of the batch's piece. Called for the batches in order.
   void hash_file(PassingBatch& batch) const;
   /// Counts the batch, or throws its error. Called for the batches in order, after hash_file().
   void note(const PassingBatch& batch) const;
-
- private:
-  void read(PassingBatch& batch) const;
-
-  EnvironmentSource& environment_;
-  int threads_;
-  FileHashes* files_;
-  StageClocks& clocks_;
-  const Progress& progress_;
-  bool failed_ = false;
 };
 
 /// Reads batches and calls `work` with each, several threads at a time; then `in_order` with each
@@ -113,7 +109,7 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
   });
   const auto noted = piece_of(scope, order, [&](const Batch& batch) {
     pass.note(*batch);
-    const auto running = pass.clocks().measure(Stage::kHash);
+    const auto running = pass.clocks.measure(Stage::kHash);
     in_order(batch->quanta, batch->made);
     return batch;
   });
@@ -122,7 +118,7 @@ void for_each_batch(EnvironmentPass pass, Work work, InOrder in_order, Last last
   constexpr auto parallel = tbb::filter_mode::parallel;
   using Step = Handed<Batch>;
   scope.begin();
-  tbb::parallel_pipeline(pass.batches_in_flight(),
+  tbb::parallel_pipeline(static_cast<std::size_t>(pass.threads),
                          tbb::make_filter<void, Step>(serial, next) &
                              tbb::make_filter<Step, Step>(parallel, converted) &
                              tbb::make_filter<Step, Step>(serial, hashed) &

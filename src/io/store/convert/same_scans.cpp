@@ -35,11 +35,10 @@ std::size_t slot_of(const PlaceQuanta& q) {
 }  // namespace
 
 void PlaceSample::add(const QuantaBatch& batch) {
-  const MeasuredQuanta measured(batch, quantisation_);
   while (next_ < seen_ + batch.quanta.size()) {
     const PlaceQuanta& at = batch.quanta[next_ - seen_];
-    samples_.push_back(
-        {at, measured(at), static_cast<std::uint32_t>(batch.file), batch.turn.has_value()});
+    samples_.push_back({at, measured(batch, at, quantisation_),
+                        static_cast<std::uint32_t>(batch.file), batch.turn.has_value()});
     ++group_;
     if (samples_.size() == kMostSamples) thin();
     choose_next();
@@ -90,17 +89,8 @@ PlaceCounter::PlaceCounter(const std::vector<PlaceQuanta>& places, StepJudge ste
   }
 }
 
-void PlaceCounter::add_cubes(const QuantaBatch& batch) {
-  std::shared_lock reading(cubes_mutex_);
-  const std::vector<StepJudge::Found> found = steps_.cubes_of(batch);
-  reading.unlock();
-  if (found.empty()) return;
-  const std::lock_guard writing(cubes_mutex_);
-  steps_.add(found);
-}
-
 void PlaceCounter::add(const QuantaBatch& batch) {
-  if (steps_.any()) add_cubes(batch);
+  steps_.add(batch, cubes_mutex_);
   if (places_.empty()) return;
   std::vector<Place> found(places_.size());
   for (std::size_t i = 0; i < batch.quanta.size(); ++i) {
@@ -132,9 +122,9 @@ std::vector<PlaceCounter::Place> PlaceCounter::crowded(std::uint64_t points) con
   return out;
 }
 
-std::optional<Message> warning_on_same_scans(std::span<const std::filesystem::path> files,
-                                             std::span<const SourceFile> sources,
-                                             std::span<const FileBox> boxes) {
+void warn_of_same_scans(std::span<const std::filesystem::path> files,
+                        std::span<const SourceFile> sources, std::span<const FileBox> boxes,
+                        MessageLog& log) {
   constexpr std::size_t kNamed = 3;
   std::map<std::pair<std::uint64_t, std::uint64_t>, std::size_t> first_with;
   std::size_t count = 0;
@@ -152,11 +142,10 @@ std::optional<Message> warning_on_same_scans(std::span<const std::filesystem::pa
     names += (names.empty() ? "" : "; ") + files[i].string() +
              (one_file ? " is the same file as " : " has the same bytes as ") + earlier.string();
   }
-  if (count == 0) return std::nullopt;
+  if (count == 0) return;
   if (count > kNamed) names += "; and " + std::to_string(count - kNamed) + " more";
-  return warning("same-scan",
-                 names + ": " + format_count(points) + " points are in the store twice",
-                 {{"files", static_cast<double>(count)}, {"points", static_cast<double>(points)}});
+  log.warn("same-scan", names + ": " + format_count(points) + " points are in the store twice",
+           {{"files", static_cast<double>(count)}, {"points", static_cast<double>(points)}});
 }
 
 }  // namespace clearway

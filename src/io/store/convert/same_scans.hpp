@@ -67,7 +67,6 @@ class PlaceCounter {
   /// places: at most 200.
   explicit PlaceCounter(const std::vector<PlaceQuanta>& places, StepJudge steps = {});
 
-  bool any() const { return !places_.empty() || steps_.any(); }
   void add(const QuantaBatch& batch);
   const StepJudge& steps() const { return steps_; }
   /// The places for which a warning is due among `points` points, the fullest first.
@@ -79,8 +78,6 @@ class PlaceCounter {
   }
 
  private:
-  void add_cubes(const QuantaBatch& batch);
-
   std::vector<Place> places_;
   StepJudge steps_;
   std::vector<std::uint16_t> table_;  // by hash: 1 + the place's index, or 0
@@ -88,10 +85,10 @@ class PlaceCounter {
   std::shared_mutex cubes_mutex_;
 };
 
-/// The warning on inputs whose bytes equal those of an earlier one: the same file named twice, or a
-/// copy of it. Inputs without points do not count. sources: descriptions of the files as read.
-std::optional<Message> warning_on_same_scans(std::span<const std::filesystem::path> files,
-                                             std::span<const SourceFile> sources,
-                                             std::span<const FileBox> boxes);
+/// Warns of inputs whose bytes equal those of an earlier one: the same file named twice, or a copy
+/// of it. Inputs without points do not count. sources: descriptions of the files as read.
+void warn_of_same_scans(std::span<const std::filesystem::path> files,
+                        std::span<const SourceFile> sources, std::span<const FileBox> boxes,
+                        MessageLog& log);
 
 }  // namespace clearway

@@ -69,8 +69,4 @@ std::vector<SourceFile> SourceDescription::get(std::vector<std::optional<SourceF
   return sources;
 }
 
-std::string layout_name(const std::optional<double>& regular_size) {
-  return regular_size ? "regular:" + format_number(*regular_size) : "adaptive";
-}
-
 }  // namespace clearway

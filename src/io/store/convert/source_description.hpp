@@ -40,7 +40,4 @@ class SourceDescription {
   std::future<std::vector<std::optional<SourceFile>>> sources_;
 };
 
-/// The name of a layout: "adaptive" or "regular:SIZE".
-std::string layout_name(const std::optional<double>& regular_size);
-
 }  // namespace clearway

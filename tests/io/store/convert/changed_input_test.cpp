@@ -75,21 +75,21 @@ TEST_CASE("an input that changes before its last pass is refused by name") {
 TEST_CASE("points are distributed only where they are those that were counted") {
   Scans scans;
   NoProgress progress;
-  EnvironmentSource environment(scans.options.inputs, {}, progress);
+  EnvironmentSource environment(scans.options, progress);
   const Lattice lattice;
-  InputSurvey survey;
+  PlaceSample sample;
+  FileBoxes boxes;
   PlaceCounter places({});
   StageClocks clocks;
   FileHashes hashes(environment.files(), {false, false});
   CountedEnvironment counted =
-      count_environment(environment, lattice, survey, hashes, 1, clocks, progress);
+      count_environment(environment, lattice, sample, boxes, hashes, 1, clocks, progress);
   const SplitTree tree(counted.bins, lattice, environment.quantisation().scale);
   const auto distribute_again = [&] {
     std::vector<File> files;
     files.push_back(File::create_temporary(scans.folder.folder()));
     Distribution distribution(tree, std::move(files));
-    distribute(environment, counted.hashes(), lattice, tree, places, distribution, 2, clocks,
-               progress);
+    distribute(environment, counted, lattice, tree, places, distribution, 2, clocks, progress);
     return distribution.take(0).span().size();
   };
   check_equal(distribute_again(), 2000);

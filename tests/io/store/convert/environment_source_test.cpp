@@ -148,7 +148,8 @@ TEST_CASE("lengths in metres, in feet and without a unit go together where they 
 
 TEST_CASE("standard input goes with nothing else, and a pipe given as a file is refused") {
   NoProgress progress;
-  CHECK_THROWS_AS(EnvironmentSource({"-", "a.las"}, {}, progress), UsageError);
+  const ConversionOptions both{{}, {"-", "a.las"}, "a.h5"};
+  CHECK_THROWS_AS(EnvironmentSource(both, progress), UsageError);
   Inputs inputs;
   const auto pipe = inputs.folder / "pipe.las";
   REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);

@@ -88,7 +88,7 @@ TEST_CASE("a folder of 3DTK scans converts with their poses, which are sources t
       codes_of(inputs.read().warnings),
       "note left-out, note scan-placed, note scan-placed, note scan-placed, note scan-placed");
   NoProgress progress;
-  const EnvironmentSource source(inputs.options.inputs, {}, progress);
+  const EnvironmentSource source(inputs.options, progress);
   source.refuse_changed();
   put_bytes(inputs.folder / "dat/scan003.pose", "0 0 301\n0 0 0\n");
   check_refused([&] { source.refuse_changed(); }, "scan003.pose");

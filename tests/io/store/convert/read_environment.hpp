@@ -26,9 +26,10 @@ struct Environment {
 
 /// Files in a folder of their own that are read as an environment.
 struct Inputs : Conversion {
-  Environment read(const EnvironmentOptions& how = {}) const {
+  Environment read(const ConvertOptions& how = {}) const {
     NoProgress progress;
-    EnvironmentSource source(options.inputs, how, progress);
+    const ConversionOptions all{how, options.inputs, options.output};
+    EnvironmentSource source(all, progress);
     Environment out{};
     QuantaBatch batch;
     while (source.read(batch)) {
@@ -46,7 +47,7 @@ struct Inputs : Conversion {
   }
 
   /// The error with which reading them is refused; "none" where it is not.
-  InputError refused(const EnvironmentOptions& how = {}) const {
+  InputError refused(const ConvertOptions& how = {}) const {
     try {
       read(how);
     } catch (const InputError& error) {
@@ -54,7 +55,7 @@ struct Inputs : Conversion {
     }
     return InputError("none");
   }
-  std::string refusal(const EnvironmentOptions& how = {}) const { return refused(how).what(); }
+  std::string refusal(const ConvertOptions& how = {}) const { return refused(how).what(); }
 };
 
 }  // namespace clearway::test
