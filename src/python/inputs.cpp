@@ -307,10 +307,11 @@ void add_convert_report(py::module_& module) {
       .def_readonly("temporary_bytes", &Report::temporary_bytes,
                     "How many bytes temporary files took.")
       .def_readonly("output_bytes", &Report::output_bytes, "How many bytes the store has.")
-      .def_readonly("resumed_from", &Report::resumed_from,
-                    "What an interrupted call had come to, which resume=True took over: 'the inputs "
-                    "were inspected', 'all points were counted' or 'all points were distributed'. "
-                    "Empty where nothing was taken over.")
+      .def_readonly(
+          "resumed_from", &Report::resumed_from,
+          "What an interrupted call had come to, which resume=True took over: 'the inputs "
+          "were inspected', 'all points were counted' or 'all points were distributed'. "
+          "Empty where nothing was taken over.")
       .def_readonly("count_seconds", &Report::count_seconds,
                     "Seconds of counting the points of the inputs.")
       .def_readonly("distribute_seconds", &Report::distribute_seconds,
