@@ -15,51 +15,45 @@ struct RowColumns {
   bool poses = false, distances = false, sources = false;
 };
 
-RowColumns columns_of(const Query& query, PointQuestion question) {
-  switch (question) {
-    case PointQuestion::kHits:
-    case PointQuestion::kNear:
-      return {.poses = query.first_pose};
-    case PointQuestion::kClearances:
-      return {.poses = true, .distances = true};
-    case PointQuestion::kLast:
-      return {.poses = true};
-    case PointQuestion::kDepths:
-      return {.distances = true, .sources = true};
-    case PointQuestion::kCertain:
-    case PointQuestion::kBelow:
-    case PointQuestion::kIgnored:
-    case PointQuestion::kIgnoredHigh:
-      break;
-  }
-  return {};
-}
+struct QuestionFacts {
+  const char* name;
+  bool (*is_asked)(const Query&);
+  RowColumns columns = {};
+  bool first_poses = false;  ///< whether its rows have poses where first poses are asked for
+};
 
-bool asks(const Query& query, PointQuestion question) {
-  switch (question) {
-    case PointQuestion::kHits:
-      return true;
-    case PointQuestion::kClearances:
-      return query.clearance > 0;
-    case PointQuestion::kLast:
-      return query.first_pose;
-    case PointQuestion::kCertain:
-    case PointQuestion::kNear:
-      return query.has_budget();
-    case PointQuestion::kBelow:
-      return has_floor(query);
-    case PointQuestion::kIgnored:
-    case PointQuestion::kIgnoredHigh:
-      return query.ignores_points();
-    case PointQuestion::kDepths:
-      return query.depth;
-  }
-  return false;
+bool has_budget(const Query& query) { return query.has_budget(); }
+bool ignores_points(const Query& query) { return query.ignores_points(); }
+
+/// Of each question, in their order.
+constexpr std::array<QuestionFacts, kQuestions> kFacts{{
+    {.name = "hits", .is_asked = [](const Query&) { return true; }, .first_poses = true},
+    {"clearances",
+     [](const Query& query) { return query.clearance > 0; },
+     {.poses = true, .distances = true}},
+    {"last", [](const Query& query) { return query.first_pose; }, {.poses = true}},
+    {"certain", has_budget},
+    {.name = "near", .is_asked = has_budget, .first_poses = true},
+    {"below", [](const Query& query) { return has_floor(query); }},
+    {"ignored", ignores_points},
+    {"ignored_high", ignores_points},
+    {"depths",
+     [](const Query& query) { return query.depth; },
+     {.distances = true, .sources = true}},
+}};
+
+RowColumns columns_of(const Query& query, PointQuestion question) {
+  const QuestionFacts& facts = kFacts[index_of(question)];
+  RowColumns columns = facts.columns;
+  columns.poses = columns.poses || (facts.first_poses && query.first_pose);
+  return columns;
 }
 
 template <typename Visit>
-void for_each_question(Visit visit) {
-  for (std::size_t i = 0; i < kQuestions; ++i) visit(static_cast<PointQuestion>(i));
+void for_each_asked(const Query& query, Visit visit) {
+  for (std::size_t i = 0; i < kQuestions; ++i) {
+    if (kFacts[i].is_asked(query)) visit(static_cast<PointQuestion>(i));
+  }
 }
 
 std::uint64_t bytes_of(const CellRows& rows) {
@@ -128,12 +122,7 @@ std::vector<PointQuestion> questions_in(JournalPayload& payload) {
   return questions;
 }
 
-const char* name_of(PointQuestion question) {
-  constexpr std::array<const char*, kQuestions> kNames{"hits",    "clearances",   "last",
-                                                       "certain", "near",         "below",
-                                                       "ignored", "ignored_high", "depths"};
-  return kNames[index_of(question)];
-}
+const char* name_of(PointQuestion question) { return kFacts[index_of(question)].name; }
 
 CellRows hit_rows(const PackedCloud& cloud, const PageResult& page, std::size_t index) {
   const auto hits = part_of_cell(page.hits, index, cloud.blocks_per_cell());
@@ -199,8 +188,8 @@ AnswerRows::AnswerRows(const PackedCloud& cloud, const Query& query, RowStorage&
       query_(query),
       storage_(storage),
       pose_end_(static_cast<std::uint32_t>(BodyNumbers(query).end(query.poses.size()))) {
-  for_each_question([&](PointQuestion question) {
-    if (clearway::asks(query, question)) places_[index_of(question)].resize(cloud.cells().size());
+  for_each_asked(query, [&](PointQuestion question) {
+    places_[index_of(question)].resize(cloud.cells().size());
   });
 }
 
@@ -304,9 +293,8 @@ std::vector<std::uint32_t> AnswerRows::cells(PointQuestion question) const {
 
 std::uint64_t AnswerRows::bytes(const PackedCloud& cloud, const Query& query) {
   std::uint64_t bytes = 0;
-  for_each_question([&](PointQuestion question) {
-    if (clearway::asks(query, question)) bytes += cloud.cells().size() * sizeof(std::uint64_t);
-  });
+  for_each_asked(query,
+                 [&](PointQuestion) { bytes += cloud.cells().size() * sizeof(std::uint64_t); });
   return bytes;
 }
 
@@ -314,8 +302,7 @@ std::uint64_t AnswerRows::most_cell_bytes(const PackedCloud& cloud, const Query&
   const std::uint64_t words =
       cloud.blocks_per_cell() * (2 * sizeof(std::uint64_t) + JournalRecord::kMostCountBytes);
   std::uint64_t bytes = 0;
-  for_each_question([&](PointQuestion question) {
-    if (!clearway::asks(query, question)) return;
+  for_each_asked(query, [&](PointQuestion question) {
     const RowColumns columns = columns_of(query, question);
     const std::uint64_t values = (columns.poses ? sizeof(std::uint32_t) : 0) +
                                  (columns.distances ? sizeof(double) : 0) +

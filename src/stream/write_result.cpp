@@ -1,19 +1,22 @@
 #include "stream/write_result.hpp"
 
 #include <tbb/blocked_range.h>
+#include <tbb/parallel_pipeline.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <span>
+#include <type_traits>
 #include <vector>
 
+#include "core/query/body_numbers.hpp"
 #include "core/query/search_result.hpp"
 #include "core/util/progress.hpp"
+#include "core/util/tsan_annotations.hpp"
 #include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
@@ -23,6 +26,56 @@
 
 namespace clearway {
 namespace {
+
+// The rows of each table: the question that they answer, and the table that they are put into.
+
+struct CollisionRow {
+  static constexpr PointQuestion kQuestion = PointQuestion::kHits;
+  static constexpr auto kTable = &ResultTables::collisions;
+
+  std::uint64_t source;
+  std::int32_t q[3];
+  std::uint32_t first_pose;  ///< encoded as BodyNumbers does
+  std::uint32_t last_pose;
+  std::uint8_t certain;  ///< whether the error budget says that it is certainly too close
+  std::uint8_t point_class;
+};
+
+/// A row with the free point that is nearest to it, where depths are asked for.
+struct DeepRow : CollisionRow {
+  Depth depth;
+};
+
+struct NearRow {
+  static constexpr PointQuestion kQuestion = PointQuestion::kNear;
+  static constexpr auto kTable = &ResultTables::near;
+
+  std::uint64_t source;
+  std::int32_t q[3];
+  std::uint32_t first_pose;  ///< encoded as BodyNumbers does
+  std::uint8_t point_class;
+};
+
+struct ClearanceRow {
+  static constexpr PointQuestion kQuestion = PointQuestion::kClearances;
+  static constexpr auto kTable = &ResultTables::clearances;
+
+  std::uint64_t source;
+  double distance;
+  std::int32_t q[3];
+  std::uint32_t pose;  ///< encoded as BodyNumbers does
+  std::uint8_t point_class;
+};
+
+template <typename Row>
+using TableOf = std::remove_reference_t<decltype(std::declval<ResultTables&>().*Row::kTable)>;
+
+/// What the encoding has to know besides the rows.
+struct RowMeaning {
+  const Quantisation& quantisation;
+  const ResultHeader& header;
+  BodyNumbers numbers;
+};
 
 /// Visits the rows in short pieces, so that their columns stay in a core's cache.
 template <typename Row, typename Visit>
@@ -120,7 +173,15 @@ void put_columns(const RowMeaning& meaning, Clearances& columns, Put put) {
   put_classes(meaning, columns, put);
 }
 
-template <typename Rows, typename Row>
+/// Encoded rows of a table, and what they say in short.
+template <typename Rows>
+struct WritePiece {
+  EncodedRows<Rows> rows;
+  TableSummary summary = {};
+};
+
+/// Encodes and summarises rows that ascend by source index.
+template <typename Row, typename Rows = TableOf<Row>>
 std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMeaning& meaning,
                                          std::span<const Row> rows) {
   auto out = std::make_shared<WritePiece<Rows>>(WritePiece<Rows>{writer.new_rows<Rows>()});
@@ -135,33 +196,43 @@ std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMe
   return out;
 }
 
-}  // namespace
-
-std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
-                                                    const RowMeaning& meaning,
-                                                    std::span<const CollisionRow> rows) {
-  return encode<Collisions>(writer, meaning, rows);
+/// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.
+/// at_once: greatest number of pieces in memory. Throws as ResultWriter does, and Interrupted when
+/// the progress asks to stop.
+template <typename Row>
+void write_rows(ResultWriter& writer, const RowMeaning& meaning, std::span<const Row> rows,
+                std::size_t at_once, Progress& progress, TableSummary& summary) {
+  using Piece = std::shared_ptr<WritePiece<TableOf<Row>>>;
+  std::size_t next = 0;
+  const ParallelScope scope;
+  const SerialStage input, hashed, output;
+  const auto take = piece_of(scope, input, [&](tbb::flow_control& flow) {
+    throw_if_stopped(progress);
+    const std::size_t first = next;
+    next = std::min(rows.size(), first + kEncodedRows);
+    if (first == next) flow.stop();
+    return rows.subspan(first, next - first);
+  });
+  const auto encoded = piece_of(
+      scope, [&](std::span<const Row> piece) -> Piece { return encode(writer, meaning, piece); });
+  const auto hash = piece_of(scope, hashed, [&](const Piece& piece) {
+    writer.hash(piece->rows);
+    return piece;
+  });
+  const auto write = piece_of(scope, output, [&](const Piece& piece) {
+    writer.write(piece->rows);
+    add_summary(piece->summary, summary);
+    progress.advance(piece->rows.size());
+  });
+  constexpr auto kInOrder = tbb::filter_mode::serial_in_order;
+  scope.begin();
+  tbb::parallel_pipeline(
+      at_once, tbb::make_filter<void, std::span<const Row>>(kInOrder, take) &
+                   tbb::make_filter<std::span<const Row>, Handed<Piece>>(tbb::filter_mode::parallel,
+                                                                         encoded) &
+                   tbb::make_filter<Handed<Piece>, Handed<Piece>>(kInOrder, hash) &
+                   tbb::make_filter<Handed<Piece>, void>(kInOrder, write));
 }
-
-std::shared_ptr<WritePiece<Collisions>> encode_rows(const ResultWriter& writer,
-                                                    const RowMeaning& meaning,
-                                                    std::span<const DeepRow> rows) {
-  return encode<Collisions>(writer, meaning, rows);
-}
-
-std::shared_ptr<WritePiece<Nearby>> encode_rows(const ResultWriter& writer,
-                                                const RowMeaning& meaning,
-                                                std::span<const NearRow> rows) {
-  return encode<Nearby>(writer, meaning, rows);
-}
-
-std::shared_ptr<WritePiece<Clearances>> encode_rows(const ResultWriter& writer,
-                                                    const RowMeaning& meaning,
-                                                    std::span<const ClearanceRow> rows) {
-  return encode<Clearances>(writer, meaning, rows);
-}
-
-namespace {
 
 /// Number of poses that are written at a time.
 constexpr std::uint64_t kPoses = 1 << 14;
@@ -171,39 +242,6 @@ auto classes_of(const StoreReader& store, std::uint32_t cell) {
   std::optional<PackedChunk<std::uint8_t>> classes;
   if (store.has_classes()) classes = store.classes(cell);
   return [classes](std::uint32_t i) { return classes ? (*classes)[i] : std::uint8_t{0}; };
-}
-
-/// Takes the rows of some poses at a time, of which the first is `first_pose`.
-using TakeProfile = std::function<void(const ProfileRows& rows, std::uint64_t first_pose)>;
-
-/// Hands out the nearest points of all poses. chainage: that of every pose, metres. is_part:
-/// whether this is a part of a result, which has the squares, too. Throws InputError for a damaged
-/// cell, Interrupted when the progress asks to stop.
-void for_profile(const StoreReader& store, const ProfileSet& profile,
-                 std::span<const double> chainage, bool is_part, Progress& progress,
-                 const TakeProfile& take) {
-  constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
-  ProfileRows rows;
-  for (std::uint64_t first = 0; first < profile.poses(); first += kPoses) {
-    throw_if_stopped(progress);
-    const std::uint64_t end = std::min(profile.poses(), first + kPoses);
-    clear_rows(rows);
-    for (std::uint64_t pose = first; pose < end; ++pose) {
-      const ProfilePoint point = profile.at(pose);
-      const auto cell = static_cast<std::uint32_t>(point.entry / store.cell_entries());
-      const auto index = static_cast<std::uint32_t>(point.entry % store.cell_entries());
-      rows.distance.push_back(signed_root(point.squared));
-      rows.source.push_back(point.source);
-      rows.xyz.push_back(point.found() ? store.position_of(cell, index)
-                                       : Vec3{kNowhere, kNowhere, kNowhere});
-      if (store.has_classes()) {
-        rows.point_class.push_back(point.found() ? store.class_of(cell, index) : 0);
-      }
-      rows.chainage.push_back(chainage[pose]);
-      if (is_part) rows.squared.push_back(point.squared);
-    }
-    take(rows, first);
-  }
 }
 
 /// Memory for chunks that the file's writer holds back, and for what the profile is written from.
@@ -265,54 +303,36 @@ std::size_t end_of_pass(const StoreReader& store, const std::vector<std::uint64_
   return end;
 }
 
-/// Writes the rows of a question that has some in passes by write(rows), each with a multiple of
-/// kEncodedRows rows except the last.
-template <typename Row, typename RowsOf, typename Write>
-void write_found(const StoreReader& store, const AnswerRows& answer, PointQuestion question,
-                 const WritePlan& plan, RowMemory& memory, Progress& progress, RowsOf rows_of,
-                 Write write) {
-  tbb::task_arena arena(plan.threads);
-  std::optional<GatherRows<Row>> gather;
-  arena.execute([&] { gather.emplace(store, answer, question, progress); });
-  const std::vector<std::uint64_t>& counts = gather->counts();
-  const std::size_t most = std::min<std::uint64_t>(plan.rows, answer.points(question));
-  const std::uint64_t largest =
-      std::min(SourceParts::kMostRows, *std::max_element(counts.begin(), counts.end()));
-  const std::uint64_t copied = plan.copies ? plan.threads * largest : 0;
-  const std::span<Row> all = memory.rows<Row>(most + copied);
-  const std::span<Row> rows = all.first(most), copies = all.subspan(most);
-  std::size_t kept = 0;  // number of rows of the last pass that are kept, at the front
-  for (std::size_t first = 0; first < counts.size();) {
-    const std::size_t end = end_of_pass(store, counts, first, most - kept);
-    std::size_t count = kept;
-    for (std::size_t part = first; part < end; ++part) count += counts[part];
-    arena.execute(
-        [&] { gather->gather(first, end, rows.subspan(kept, count - kept), copies, rows_of); });
-    const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
-    write(rows.first(whole));
-    std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),
-              rows.begin() + static_cast<std::ptrdiff_t>(count), rows.begin());
-    kept = count - whole;
-    first = end;
-  }
-}
-
 /// Brings the points of a result into the order of their source indices, and hands out the rows of
-/// each table in passes, with the plan by which they were gathered.
+/// each table in passes.
 class ResultRows {
  public:
-  ResultRows(const StoreReader& store, const AnswerRows& answer, const ResultHeader& header,
-             std::uint64_t memory_bytes, RowMemory& memory, Progress& progress)
+  /// chainage: that of every pose, metres, for a profile. All references outlive it.
+  ResultRows(const StoreReader& store, const FoundAnswer& answer, const RowMeaning& meaning,
+             std::uint64_t memory_bytes, RowMemory& memory, std::span<const double> chainage,
+             Progress& progress)
       : store_(store),
-        answer_(answer),
-        meaning_{store.quantisation(), header, BodyNumbers(header.bodies.size())},
+        answer_(*answer.rows),
+        profile_(answer.profile),
+        meaning_(meaning),
         memory_bytes_(memory_bytes),
         memory_(memory),
+        chainage_(chainage),
         progress_(progress) {}
 
-  const RowMeaning& meaning() const { return meaning_; }
-  std::uint64_t count(PointQuestion question) const { return answer_.points(question); }
+  /// Hands out the rows of all tables, one table after another. take(rows, first, pieces): takes
+  /// the rows of a table from row `first` on, of which at most so many encoded pieces may be under
+  /// way. take_profile(rows, first): the same for the profile. Throws InputError for a damaged
+  /// cell, Interrupted when the progress asks to stop.
+  template <typename Take, typename TakeProfile>
+  void for_each(Take take, TakeProfile take_profile) {
+    for_collisions(take);
+    for_clearances(take);
+    if (meaning_.header.profile > 0) for_profile(take_profile);
+    for_near(take);
+  }
 
+ private:
   /// Hands out the colliding points, as DeepRow where depths are asked for and otherwise as
   /// CollisionRow.
   template <typename Take>
@@ -336,9 +356,8 @@ class ResultRows {
                             class_at(i)};
       };
     };
-    if (!meaning_.header.depth) return gather<CollisionRow>(PointQuestion::kHits, rows_of, take);
+    if (!meaning_.header.depth) return gather<CollisionRow>(rows_of, take);
     gather<DeepRow>(
-        PointQuestion::kHits,
         [&](std::uint32_t cell, const CellRows& hits) {
           return [row_of = rows_of(cell, hits), depths = found_in(cell, PointQuestion::kDepths)](
                      std::uint64_t source, std::uint32_t i, std::size_t row) {
@@ -364,7 +383,7 @@ class ResultRows {
                        class_at(i)};
       };
     };
-    gather<NearRow>(PointQuestion::kNear, rows_of, take);
+    gather<NearRow>(rows_of, take);
   }
 
   template <typename Take>
@@ -379,29 +398,88 @@ class ResultRows {
                             class_at(i)};
       };
     };
-    gather<ClearanceRow>(PointQuestion::kClearances, rows_of, take);
+    gather<ClearanceRow>(rows_of, take);
   }
 
- private:
+  /// Hands out the nearest points of all poses; a part of a result has the squares, too.
+  template <typename Take>
+  void for_profile(Take take) const {
+    constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+    ProfileRows rows;
+    for (std::uint64_t first = 0; first < profile_.poses(); first += kPoses) {
+      throw_if_stopped(progress_);
+      const std::uint64_t end = std::min(profile_.poses(), first + kPoses);
+      clear_rows(rows);
+      for (std::uint64_t pose = first; pose < end; ++pose) {
+        const ProfilePoint point = profile_.at(pose);
+        const auto cell = static_cast<std::uint32_t>(point.entry / store_.cell_entries());
+        const auto index = static_cast<std::uint32_t>(point.entry % store_.cell_entries());
+        rows.distance.push_back(signed_root(point.squared));
+        rows.source.push_back(point.source);
+        rows.xyz.push_back(point.found() ? store_.position_of(cell, index)
+                                         : Vec3{kNowhere, kNowhere, kNowhere});
+        if (store_.has_classes()) {
+          rows.point_class.push_back(point.found() ? store_.class_of(cell, index) : 0);
+        }
+        rows.chainage.push_back(chainage_[pose]);
+        if (meaning_.header.part) rows.squared.push_back(point.squared);
+      }
+      take(rows, first);
+    }
+  }
+
   RowFinder found_in(std::uint32_t cell, PointQuestion question) const {
     return RowFinder(answer_.read(cell, question));
   }
 
+  /// Gathers the rows of a table in passes, each with a multiple of kEncodedRows rows except the
+  /// last.
   template <typename Row, typename RowsOf, typename Take>
-  void gather(PointQuestion question, RowsOf rows_of, Take take) {
-    if (count(question) == 0) return;  // a store without points has no parts to plan for
-    const WritePlan plan = plan_of<Row>(store_, answer_.query(), count(question), memory_bytes_);
-    write_found<Row>(store_, answer_, question, plan, memory_, progress_, rows_of,
-                     [&](std::span<const Row> rows) { take(rows, plan); });
+  void gather(RowsOf rows_of, Take take) {
+    const std::uint64_t found = answer_.points(Row::kQuestion);
+    if (found == 0) return;  // a store without points has no parts to plan for
+    const WritePlan plan = plan_of<Row>(store_, answer_.query(), found, memory_bytes_);
+    tbb::task_arena arena(plan.threads);
+    std::optional<GatherRows<Row>> gather;
+    arena.execute([&] { gather.emplace(store_, answer_, Row::kQuestion, progress_); });
+    const std::vector<std::uint64_t>& counts = gather->counts();
+    const std::size_t most = std::min<std::uint64_t>(plan.rows, found);
+    const std::uint64_t largest =
+        std::min(SourceParts::kMostRows, *std::max_element(counts.begin(), counts.end()));
+    const std::uint64_t copied = plan.copies ? plan.threads * largest : 0;
+    const std::span<Row> all = memory_.rows<Row>(most + copied);
+    const std::span<Row> rows = all.first(most), copies = all.subspan(most);
+    std::uint64_t taken = 0;
+    std::size_t kept = 0;  // number of rows of the last pass that are kept, at the front
+    for (std::size_t first = 0; first < counts.size();) {
+      const std::size_t end = end_of_pass(store_, counts, first, most - kept);
+      std::size_t count = kept;
+      for (std::size_t part = first; part < end; ++part) count += counts[part];
+      arena.execute(
+          [&] { gather->gather(first, end, rows.subspan(kept, count - kept), copies, rows_of); });
+      const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
+      take(std::span<const Row>(rows.first(whole)), taken, plan.pieces);
+      taken += whole;
+      std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),
+                rows.begin() + static_cast<std::ptrdiff_t>(count), rows.begin());
+      kept = count - whole;
+      first = end;
+    }
   }
 
   const StoreReader& store_;
   const AnswerRows& answer_;
-  const RowMeaning meaning_;
+  const ProfileSet& profile_;
+  const RowMeaning& meaning_;
   std::uint64_t memory_bytes_;
   RowMemory& memory_;
+  std::span<const double> chainage_;
   Progress& progress_;
 };
+
+RowMeaning meaning_of(const StoreReader& store, const ResultHeader& header) {
+  return {store.quantisation(), header, BodyNumbers(header.bodies.size())};
+}
 
 TableSummary write_tables(const StoreReader& store, const FoundAnswer& answer,
                           const ResultHeader& header, const std::filesystem::path& path,
@@ -409,38 +487,22 @@ TableSummary write_tables(const StoreReader& store, const FoundAnswer& answer,
                           std::span<const double> chainage, const ResultFindings& findings) {
   TableSummary summary;
   RowMemory memory;
-  ResultRows rows(store, *answer.rows, header, memory_bytes, memory, progress);
-  const std::uint64_t collisions = rows.count(PointQuestion::kHits);
-  const std::uint64_t clearances = rows.count(PointQuestion::kClearances);
-  const std::uint64_t near = rows.count(PointQuestion::kNear);
+  const RowMeaning meaning = meaning_of(store, header);
+  const std::uint64_t collisions = answer.rows->points(PointQuestion::kHits);
+  const std::uint64_t clearances = answer.rows->points(PointQuestion::kClearances);
+  const std::uint64_t near = answer.rows->points(PointQuestion::kNear);
   ResultWriter writer(path, header, collisions, clearances, near,
                       answer.unseen ? answer.unseen->size() : 0, answer.swept.size());
   progress.begin("write", collisions + clearances + near, "points");
-  const auto write = [&]<typename Rows, typename Row>(std::span<const Row> some,
-                                                      const WritePlan& plan, Rows*) {
-    write_rows<Rows>(
-        writer, some, plan.pieces, progress,
-        [&](std::span<const Row> piece) { return encode_rows(writer, rows.meaning(), piece); },
-        [&](const auto& piece) { add_summary(piece.summary, summary); });
-  };
-  rows.for_collisions([&](const auto& some, const auto& plan) {
-    write(some, plan, static_cast<Collisions*>(nullptr));
-  });
-  rows.for_clearances([&](std::span<const ClearanceRow> some, const auto& plan) {
-    write(some, plan, static_cast<Clearances*>(nullptr));
-  });
-  if (header.profile > 0) {
-    for_profile(store, answer.profile, chainage, header.part.has_value(), progress,
-                [&](const ProfileRows& some, std::uint64_t first_pose) {
-                  writer.append(some);
-                  summarise(some, summary, first_pose);
-                });
-  }
-  if (header.budget) {
-    rows.for_near([&](std::span<const NearRow> some, const auto& plan) {
-      write(some, plan, static_cast<Nearby*>(nullptr));
-    });
-  }
+  ResultRows(store, answer, meaning, memory_bytes, memory, chainage, progress)
+      .for_each(
+          [&](const auto& rows, std::uint64_t, std::size_t pieces) {
+            write_rows(writer, meaning, rows, pieces, progress, summary);
+          },
+          [&](const ProfileRows& rows, std::uint64_t first) {
+            writer.append(rows);
+            summarise(rows, summary, first);
+          });
   if (answer.unseen) {
     writer.append(*answer.unseen);
     writer.append(answer.swept);
@@ -466,39 +528,22 @@ TableSummary write_result(const StoreReader& store, const FoundAnswer& answer,
 void fill_tables(const StoreReader& store, FoundAnswer answer, const ResultHeader& header,
                  std::uint64_t memory_bytes, Progress& progress, std::span<const double> chainage,
                  int threads, RowMemory& memory, ResultTables& tables) {
-  // Sets the next rows of a table that has `all` of them in the end.
-  const auto keep = [&]<typename Rows, typename Row>(const RowMeaning& meaning,
-                                                     std::span<const Row> rows, std::uint64_t all,
-                                                     std::uint64_t& kept, Rows& to) {
-    if (kept == 0) put_columns(meaning, to, SizeColumn{all});
+  const RowMeaning meaning = meaning_of(store, header);
+  const auto keep = [&]<typename Row>(std::span<const Row> rows, std::uint64_t first, std::size_t) {
+    TableOf<Row>& table = tables.*Row::kTable;
+    if (first == 0) put_columns(meaning, table, SizeColumn{answer.rows->points(Row::kQuestion)});
     using Range = tbb::blocked_range<std::size_t>;
     for_each_parallel(Range(0, rows.size(), kRowsOfThread), [&](const Range& part) {
       const std::span<const Row> of = rows.subspan(part.begin(), part.size());
-      put_columns(meaning, to, SetColumn<Row>{of, kept + part.begin()});
+      put_columns(meaning, table, SetColumn<Row>{of, first + part.begin()});
     });
-    kept += rows.size();
   };
   if (threads == 0) threads = tbb::this_task_arena::max_concurrency();
   ThreadLimit(threads).run([&] {
-    ResultRows rows(store, *answer.rows, header, memory_bytes, memory, progress);
-    std::uint64_t collisions = 0, clearances = 0, near = 0;
-    rows.for_collisions([&](const auto& some, const auto&) {
-      keep(rows.meaning(), some, rows.count(PointQuestion::kHits), collisions, tables.collisions);
-    });
-    rows.for_clearances([&](std::span<const ClearanceRow> some, const auto&) {
-      keep(rows.meaning(), some, rows.count(PointQuestion::kClearances), clearances,
-           tables.clearances);
-    });
-    if (header.profile > 0) {
-      for_profile(
-          store, answer.profile, chainage, false, progress,
-          [&](const ProfileRows& some, std::uint64_t) { append_rows(some, tables.profile); });
-    }
-    if (header.budget) {
-      rows.for_near([&](std::span<const NearRow> some, const auto&) {
-        keep(rows.meaning(), some, rows.count(PointQuestion::kNear), near, tables.near);
-      });
-    }
+    ResultRows(store, answer, meaning, memory_bytes, memory, chainage, progress)
+        .for_each(keep, [&](const ProfileRows& rows, std::uint64_t) {
+          append_rows(rows, tables.profile);
+        });
   });
   if (answer.unseen) {
     tables.unseen = std::move(*answer.unseen);
