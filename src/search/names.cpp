@@ -1,29 +1,20 @@
-#include "clearway/search.hpp"
+#include <algorithm>
+
+#include "core/describe/machine.hpp"
+#include "core/describe/search.hpp"
 
 namespace clearway {
+namespace {
 
-const char* name_of(Engine engine) {
-  switch (engine) {
-    case Engine::kSweep:
-      return "sweep";
-    case Engine::kGrid:
-      return "grid";
-    case Engine::kKdtree:
-      return "kdtree";
-  }
-  return "unknown";
+template <typename Enum>
+const char* name_in_choices(Enum value) {
+  return std::ranges::find(kChoices<Enum>, value, &Choice<Enum>::value)->name;
 }
 
-const char* name_of(Device device) {
-  switch (device) {
-    case Device::kCpu:
-      return "cpu";
-    case Device::kCuda:
-      return "cuda";
-    case Device::kAuto:
-      break;
-  }
-  return "auto";
-}
+}  // namespace
+
+const char* name_of(Engine engine) { return name_in_choices(engine); }
+
+const char* name_of(Device device) { return name_in_choices(device); }
 
 }  // namespace clearway

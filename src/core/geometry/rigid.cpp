@@ -13,11 +13,6 @@ namespace {
 
 using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
 
-Vec3 corner(const Box& box, int index) {
-  return {index & 1 ? box.hi.x : box.lo.x, index & 2 ? box.hi.y : box.lo.y,
-          index & 4 ? box.hi.z : box.lo.z};
-}
-
 }  // namespace
 
 Stretch stretch_of(const Pose& pose) {
@@ -64,8 +59,8 @@ double transform_rounding(const Vec3& reach, const Pose& pose) {
 
 double displacement_bound(const Box& model, const Pose& a, const Pose& b) {
   double greatest = 0;
-  for (int i = 0; i < 8; ++i) {
-    const Vec3 m = corner(model, i);
+  for (unsigned i = 0; i < 8; ++i) {
+    const Vec3 m = model.corner(i);
     greatest = std::max(greatest, squared_distance(transform(a, m), transform(b, m)));
   }
   const Vec3 reach = reach_of(model);

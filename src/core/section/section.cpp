@@ -1,11 +1,13 @@
 #include "clearway/section.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "clearway/answer.hpp"
@@ -21,35 +23,14 @@
 namespace clearway {
 
 const char* name_of(SectionVerdict verdict) {
-  switch (verdict) {
-    case SectionVerdict::kPasses:
-      return "passes";
-    case SectionVerdict::kStopped:
-      return "stopped";
-    case SectionVerdict::kUnknown:
-      break;
-  }
-  return "unknown";
+  constexpr std::array kNames{"passes", "stopped", "unknown"};
+  return kNames[static_cast<std::size_t>(verdict)];
 }
 
 const char* name_of(SectionTable table) {
-  switch (table) {
-    case SectionTable::kBands:
-      return "bands";
-    case SectionTable::kStations:
-      return "stations";
-    case SectionTable::kBoxes:
-      return "boxes";
-    case SectionTable::kCells:
-      return "cells";
-    case SectionTable::kUnknownCells:
-      return "unknown-cells";
-    case SectionTable::kUnknownBinCells:
-      return "unknown-bin-cells";
-    case SectionTable::kBinCells:
-      break;
-  }
-  return "bin-cells";
+  constexpr std::array kNames{"bands",         "stations",         "boxes", "cells", "bin-cells",
+                              "unknown-cells", "unknown-bin-cells"};
+  return kNames[static_cast<std::size_t>(table)];
 }
 
 void SectionCells::reserve(std::size_t cells) {
@@ -60,6 +41,13 @@ void SectionCells::reserve(std::size_t cells) {
 }
 
 namespace {
+
+/// Appends a cell of the whole path.
+void append(std::int32_t j, std::int32_t k, std::uint32_t first_pose, SectionCells& cells) {
+  cells.j.push_back(j);
+  cells.k.push_back(k);
+  cells.first_pose.push_back(first_pose);
+}
 
 /// A box of columns and rows around cells.
 struct CellBox {
@@ -91,9 +79,8 @@ SectionCells of_whole_path(const SectionCells& all, const CellBox& box) {
   for (std::size_t cell = 0; cell < first.size(); ++cell) {
     if (first[cell] == kNotBlocked) continue;
     const auto at = static_cast<std::int64_t>(cell);
-    out.j.push_back(static_cast<std::int32_t>(box.j_from + at % columns));
-    out.k.push_back(static_cast<std::int32_t>(box.k_from + at / columns));
-    out.first_pose.push_back(first[cell]);
+    append(static_cast<std::int32_t>(box.j_from + at % columns),
+           static_cast<std::int32_t>(box.k_from + at / columns), first[cell], out);
   }
   return out;
 }
@@ -106,16 +93,13 @@ SectionCells of_whole_path(const SectionCells& all) {
   std::vector<std::size_t> order(all.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, [&](std::size_t a, std::size_t b) {
-    if (all.k[a] != all.k[b]) return all.k[a] < all.k[b];
-    if (all.j[a] != all.j[b]) return all.j[a] < all.j[b];
-    return all.first_pose[a] < all.first_pose[b];
+    return std::tie(all.k[a], all.j[a], all.first_pose[a]) <
+           std::tie(all.k[b], all.j[b], all.first_pose[b]);
   });
   SectionCells out;
   for (const std::size_t i : order) {
     if (out.size() > 0 && out.k.back() == all.k[i] && out.j.back() == all.j[i]) continue;
-    out.j.push_back(all.j[i]);
-    out.k.push_back(all.k[i]);
-    out.first_pose.push_back(all.first_pose[i]);
+    append(all.j[i], all.k[i], all.first_pose[i], out);
   }
   return out;
 }
@@ -133,9 +117,7 @@ SectionCells unknown_beside(const SectionCells& blocked, const SectionCells& all
         blocked.first_pose[at] <= all.first_pose[i]) {
       continue;
     }
-    out.j.push_back(all.j[i]);
-    out.k.push_back(all.k[i]);
-    out.first_pose.push_back(all.first_pose[i]);
+    append(all.j[i], all.k[i], all.first_pose[i], out);
   }
   return out;
 }

@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "clearway/smooth.hpp"
 #include "core/geometry/chord_pose.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/geometry/rigid.hpp"
 #include "core/trajectory/smooth/smooth_curve.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -50,11 +51,7 @@ void check_is_rotation(const Pose& pose, std::size_t index) {
       skew = std::max(skew, std::abs(dot(column(a), column(b)) - (a == b ? 1 : 0)));
     }
   }
-  const double* r = pose.rotation;
-  const double determinant = r[0] * (r[4] * r[8] - r[5] * r[7]) -
-                             r[1] * (r[3] * r[8] - r[5] * r[6]) +
-                             r[2] * (r[3] * r[7] - r[4] * r[6]);
-  if (skew <= kMostSkew && determinant > 0) return;
+  if (skew <= kMostSkew && PullBack(pose).determinant > 0) return;
   throw InputError("pose " + std::to_string(index) +
                    " (counting from 0) scales, shears or mirrors; only rotations can be smoothed");
 }
@@ -93,11 +90,8 @@ class Smoothing {
     if (parameters_.step == 0) parameters_.step = 0.1;
     check(model.has_value());
     path_ = parameterised(poses, motions_, turns_);
-    for (int i = 0; i < 8; ++i) {
-      const Vec3 corner{(i & 1) != 0 ? model_.hi.x : model_.lo.x,
-                        (i & 2) != 0 ? model_.hi.y : model_.lo.y,
-                        (i & 4) != 0 ? model_.hi.z : model_.lo.z};
-      reach_ = std::max(reach_, std::sqrt(dot(corner, corner)) * (1 + 1e-12));
+    for (unsigned i = 0; i < 8; ++i) {
+      reach_ = std::max(reach_, length(model_.corner(i)) * (1 + 1e-12));
     }
     double largest = reach_;
     for (const Pose& pose : poses) {
