@@ -17,10 +17,6 @@ namespace {
 /// Covers the rounding of the few sums and products that a bound consists of.
 constexpr double kUp = 1 + 0x1p-40;
 
-Vec3 position_of(const Pose& pose) {
-  return {pose.translation[0], pose.translation[1], pose.translation[2]};
-}
-
 /// How far from its model a query looks. radius: the greatest that is searched.
 double reach_of(const Query& query, double radius) {
   return std::max({radius, query.radius, query.clearance, query.profile});
@@ -52,12 +48,12 @@ CorridorCheck::Need CorridorCheck::need_of(std::span<const Pose> poses,
   double before = 0, extent_before = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose& pose = poses[i];
-    const double away = corridor_->distance_above(position_of(pose));
+    const double away = corridor_->distance_above(pose.position());
     const double extent =
         greatest_stretch_bound(pose) * farthest_of_model + 2 * transform_rounding(reach, pose);
     double distance = away + extent;
     if (between_poses && i > 0) {
-      const double chord = length(position_of(pose) - position_of(poses[i - 1])) * kUp;
+      const double chord = length(pose.position() - poses[i - 1].position()) * kUp;
       distance = std::max(distance, (before + away + chord) / 2 + std::max(extent, extent_before));
     }
     before = away;

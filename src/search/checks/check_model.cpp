@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "clearway/error.hpp"
+#include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
@@ -70,7 +71,7 @@ void warn_of_length(const Question& question, MessageLog& log) {
   const bool tiny = is_tiny(length, question.metre);
   if (!tiny && length <= kLargest * question.metre && length <= environment) return;
   log.warn(tiny ? WarningCode("model-unit") : WarningCode("model-size"),
-           "the load is " + length_text(length, question.unit) + " long, the environment " +
+           "the load is " + question.length(length) + " long, the environment " +
                size_text(question.environment, question.unit) +
                ". Check the unit of its range along the vehicle",
            {{"model_longest", length}, {"environment_longest", environment}});
@@ -90,12 +91,12 @@ void warn_of_size(const Question& question, MessageLog& log) {
   const bool small = question.longest < kSmallest * metre ||
                      (question.longest < kSmallVehicle * metre && way > kLongWay * metre);
   if (!larger && !huge && !small) return;
-  std::string text = "the model is " + size_text(question.model, question.unit) +
-                     ", the environment " + size_text(question.environment, question.unit) + ". ";
+  std::string text = "the model is " + question.size() + ", the environment " +
+                     size_text(question.environment, question.unit) + ". ";
   if (huge) text += unit_guess(question) + (larger ? ". " : "");
   if (larger) text += "Are model and environment swapped?";
   if (!larger && !huge) {
-    text += "The path is " + length_text(way, question.unit) +
+    text += "The path is " + question.length(way) +
             " long. So small a model touches hardly anything: check its unit, that of the scan, "
             "and that the model is whole";
   }
@@ -123,10 +124,10 @@ void warn_of_origin(const Question& question, MessageLog& log) {
   if (std::ranges::any_of(question.query.poses, rests)) return;
   log.warn("model-origin",
            question.is_load()
-               ? "the load lies " + length_text(away, question.unit) +
+               ? "the load lies " + question.length(away) +
                      " from the origin of its frame, which a pose turns it about. Its range counts "
                      "from the origin of the vehicle"
-               : "the model's points lie " + length_text(away, question.unit) +
+               : "the model's points lie " + question.length(away) +
                      " from the origin of their frame, at " + extent_text(question.model) +
                      ". A pose turns and moves the model about that origin. Is the model in the "
                      "scan's coordinates? Move its reference point to 0, 0, 0",
@@ -167,7 +168,7 @@ void warn_of_scale(const Question& question, MessageLog& log) {
   log.warn("scaled-poses",
            "the poses scale the model by " + format_digits(least, 3) +
                (one ? std::string() : " to " + format_digits(most, 3)) + ": in the scan it is " +
-               size_text(box, question.unit) + ", not " + size_text(question.model, question.unit) +
+               size_text(box, question.unit) + ", not " + question.size() +
                ". The motion of a vehicle has no scale. Divide the rotations by it, or check the "
                "unit of the poses",
            {{"least", least}, {"most", most}});
@@ -176,20 +177,14 @@ void warn_of_scale(const Question& question, MessageLog& log) {
 /// Warns where poses mirror the model. Such matrices are accepted only where poses need not be
 /// rigid.
 void warn_of_mirror(const Question& question, MessageLog& log) {
-  const auto mirrors = [&](std::uint32_t pose) {
-    const auto& r = question.query.poses[pose].rotation;
-    return r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) +
-               r[2] * (r[3] * r[7] - r[4] * r[6]) <
-           0;
-  };
   std::vector<std::uint32_t> mirrored;
   for (std::uint32_t i = 0; i < question.query.poses.size(); ++i) {
-    if (mirrors(i)) mirrored.push_back(question.number_of(i));
+    if (PullBack(question.query.poses[i]).determinant < 0)
+      mirrored.push_back(question.number_of(i));
   }
   if (mirrored.empty()) return;
   log.warn("mirrored-poses",
-           counted(mirrored.size(), "pose mirrors", "poses mirror") + " the " +
-               question.words().mover +
+           counted(mirrored.size(), "pose mirrors", "poses mirror") + " the " + question.mover() +
                ", so that its left side meets what is on the right: two axes are swapped, "
                "or one has the wrong sign",
            {{"poses", static_cast<double>(mirrored.size())}}, pose_ranges(mirrored));
@@ -335,8 +330,8 @@ void check_model_spacing(const Question& question, MessageLog& log) {
   if (largest == 0) return;
   log.warn("model-spacing",
            share_text(share) + " of the model's points are farther than the radius of " +
-               length_text(question.query.radius, question.unit) +
-               " from their nearest neighbour, up to " + length_text(largest, question.unit) +
+               question.length(question.query.radius) + " from their nearest neighbour, up to " +
+               question.length(largest) +
                ": things can pass between them without a collision. Take a denser model",
            {{"share", share}, {"largest", largest}});
 }

@@ -137,10 +137,9 @@ Steps check_straight_ways(const Question& question, const std::vector<Jump>& jum
                      " the true motion can leave the straight way between two poses, which is "
                      "what is searched, by more than " +
                      (warns ? "" : "a tenth of ") + (question.is_load() ? "" : "the radius of ") +
-                     length_text(radius, question.unit) + ": by up to " +
-                     length_text(worst.distance, question.unit) + " after pose " +
-                     std::to_string(number) + ", where the " + question.words().mover +
-                     " goes on by " + length_text(moved, question.unit) + " and turns by " +
+                     question.length(radius) + ": by up to " + question.length(worst.distance) +
+                     " after pose " + std::to_string(number) + ", where the " + question.mover() +
+                     " goes on by " + question.length(moved) + " and turns by " +
                      format_digits(turned, 3) + " degrees";
   Steps starts;
   for (const Deviation& d : found) starts.push_back(question.number_of(d.pose));
@@ -192,9 +191,8 @@ void check_poses_alone(const Question& question, const Steps& known, MessageLog&
   log.warn("large-steps",
            "at " + format_count(large.size()) + " of " + format_count(steps) +
                " steps the model moves farther than the radius of " +
-               length_text(query.radius, question.unit) + ", at most " +
-               length_text(largest, question.unit) + " after pose " + std::to_string(at) +
-               ". What lies between two poses can be missed",
+               question.length(query.radius) + ", at most " + question.length(largest) +
+               " after pose " + std::to_string(at) + ". What lies between two poses can be missed",
            std::move(numbers), pose_ranges(large, 1));
 }
 
@@ -232,8 +230,8 @@ void warn_of_gaps(const Question& question, std::vector<LoadStep> steps, double 
   const SectionParameters& asked = *question.section;
   log.warn("large-steps",
            "the longest step, from pose " + std::to_string(question.number_of(longest.pose)) +
-               ", is " + length_text(longest.length, question.unit) + " and the load is " +
-               length_text(asked.front - asked.rear, question.unit) +
+               ", is " + question.length(longest.length) + " and the load is " +
+               question.length(asked.front - asked.rear) +
                " long: what lies between two poses may block nothing",
            {{"step", longest.length}, {"length", length}}, stretches_of(question, steps));
 }
@@ -253,11 +251,10 @@ void check_across(const Question& question, std::vector<LoadStep> steps, Message
   log.add(warning_or_note(
       warns, "large-steps",
       "at " + format_count(steps.size()) + " of " + counted(all, "step") +
-          " the load turns so far that it moves across by more than " +
-          length_text(least, question.unit) + ": by up to " +
-          length_text(worst.across, question.unit) + " after pose " +
+          " the load turns so far that it moves across by more than " + question.length(least) +
+          ": by up to " + question.length(worst.across) + " after pose " +
           std::to_string(question.number_of(worst.pose)) + ", where it goes on by " +
-          length_text(worst.length, question.unit) +
+          question.length(worst.length) +
           ". What comes beside it between two poses can reach deeper into it than at either",
       {{"share", static_cast<double>(steps.size()) / static_cast<double>(all)},
        {"largest", worst.across},
@@ -288,9 +285,8 @@ void check_growth(const Question& question, MessageLog& log) {
   const SectionMotion motion = section_motion(question.query.poses, asked);
   if (!(motion.across > asked.cell)) return;
   log.warn("motion-exceeds-cell",
-           "from a pose to the next the load moves by up to " +
-               length_text(motion.across, question.unit) + " across, and the cells are " +
-               length_text(asked.cell, question.unit) +
+           "from a pose to the next the load moves by up to " + question.length(motion.across) +
+               " across, and the cells are " + question.length(asked.cell) +
                ": a check keeps half of that motion as a distance, so it stops loads that "
                "pass. Poses that are closer together keep less",
            {{"along", motion.along}, {"across", motion.across}});
@@ -308,10 +304,9 @@ void warn_of_jumps(const Question& question, std::vector<Jump> jumps, const Step
       jumps, [&](const Jump& jump) { return has(warned, static_cast<std::uint32_t>(jump.pose)); });
   if (jumps.empty()) return;
   log.add(jump_warning(jumps, prefix, unit_name(question.unit),
-                       question.query.between_poses
-                           ? std::string(". The ") + question.words().mover +
-                                 " is searched on the straight way there"
-                           : ". Nothing is searched on the way there"));
+                       question.query.between_poses ? std::string(". The ") + question.mover() +
+                                                          " is searched on the straight way there"
+                                                    : ". Nothing is searched on the way there"));
 }
 
 Steps united_steps(const Steps& a, const Steps& b) {
@@ -361,9 +356,8 @@ bool warn_of_rotations(const Question& question, const Drive& drive, MessageLog&
             : "Check order, sign and zero direction of the angles, and the frame that the poses "
               "are of";
   log.warn("rotations",
-           "the " + std::string(question.words().mover) +
-               " does not move along one of its own axes: only " + share_text(share) +
-               " of the motion is along the likeliest. " + why,
+           "the " + question.mover() + " does not move along one of its own axes: only " +
+               share_text(share) + " of the motion is along the likeliest. " + why,
            {{"share", share}});
   return true;
 }
@@ -373,7 +367,7 @@ bool warn_of_tilt(const Question& question, const Drive& drive, MessageLog& log)
   constexpr double kTilted = 0.5;  // 60 degrees on average
   if (upright >= kTilted) return false;
   log.warn("tilted",
-           "the " + std::string(question.words().mover) + "'s z axis " +
+           "the " + question.mover() + "'s z axis " +
                (upright < -kTilted ? "points down" : "does not point up") +
                " along the path: the poses seem to be of a frame with other axes, such as a "
                "camera's, or with z down",
@@ -397,7 +391,7 @@ void warn_of_lean(const Question& question, const Drive& drive, MessageLog& log)
   const double right = drive.right_turns();
   if ((lean > 0 ? right : 1 - right) >= kCurve) return;  // it leans into a curve
   log.warn("leans",
-           "along the whole path the " + std::string(question.words().mover) + " leans to the " +
+           "along the whole path the " + question.mover() + " leans to the " +
                (lean > 0 ? "right" : "left") + " by " + format_digits(std::abs(lean), 3) +
                " degrees, also where it does not turn: are the poses of a scanner or an inertial "
                "unit that is mounted askew? If the ground has this slope, this is all right",
@@ -406,8 +400,7 @@ void warn_of_lean(const Question& question, const Drive& drive, MessageLog& log)
 
 void warn_of_flat_model(const Question& question, int axis, MessageLog& log) {
   log.warn("flat-model",
-           "the model is flat: " + size_text(question.model, question.unit) +
-               ". It moves along its " + "xyz"[axis] +
+           "the model is flat: " + question.size() + ". It moves along its " + "xyz"[axis] +
                " axis, along which it has no length. A vehicle needs more room in curves than its "
                "profile. Give the whole vehicle",
            {{"thickness", question.model.hi[axis] - question.model.lo[axis]}});
@@ -431,10 +424,8 @@ void warn_sideways(const Question& question, const Drive& drive, MessageLog& log
   std::vector<std::pair<std::string, double>> numbers{{"share", shares[axis]}};
   if (!question.is_load()) numbers.push_back({"model_longest", Sides(question.model).longest});
   log.warn("sideways",
-           "the " + std::string(question.words().mover) + " moves along its " + "xyz"[axis] +
-               " axis, but " +
-               (question.is_load() ? "its range is along x"
-                                   : "is " + size_text(question.model, question.unit)) +
+           "the " + question.mover() + " moves along its " + "xyz"[axis] + " axis, but " +
+               (question.is_load() ? "its range is along x" : "is " + question.size()) +
                (axis == 2 ? ": z is expected to point up. " : ": it drives sideways. ") +
                (question.is_load() ? "Turn the rotations of the poses"
                                    : "Turn the model, or the rotations of the poses"),
@@ -447,7 +438,7 @@ void tell_backwards(const Question& question, const Drive& drive, MessageLog& lo
   const double along = drive.forwards(0);
   if (along > -kAlongAxis) return;
   log.add(note("drives-backwards",
-               "the " + std::string(question.words().mover) +
+               "the " + question.mover() +
                    " moves backwards, against its x axis: if it does not reverse, turn the poses" +
                    (question.is_load() ? "" : " or the model") +
                    " by 180 degrees, because left and right are swapped",
@@ -483,9 +474,8 @@ void warn_of_tiny_path(const Question& question, MessageLog& log) {
   if (!(across < longest / 4) || longest > kHuge * question.metre) return;
   if (!hardly_turns(question) && !is_small_drive(question, across)) return;
   log.warn("tiny-path",
-           "all " + format_count(poses.size()) + " poses lie within " +
-               length_text(across, question.unit) + ", and the " + question.words().mover + " is " +
-               length_text(longest, question.unit) +
+           "all " + format_count(poses.size()) + " poses lie within " + question.length(across) +
+               ", and the " + question.mover() + " is " + question.length(longest) +
                " long: is the path in another unit, such as kilometres or degrees?",
            {{"path", across}, {"model_longest", longest}});
 }

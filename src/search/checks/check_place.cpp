@@ -251,20 +251,18 @@ Box swept_box(const Question& question) {
 std::string boxes_text(const Question& question, const Box& swept) {
   const std::string text = "Environment: " + extent_text(question.environment);
   if (question.is_load()) return text + ". Load on its path: about " + extent_text(swept);
-  return text + ". Model on its path: " + extent_text(swept) +
-         ". Model: " + size_text(question.model, question.unit);
+  return text + ". Model on its path: " + extent_text(swept) + ". Model: " + question.size();
 }
 
 void warn_out_of_reach(const Question& question, const PathCover& cover, const Box& swept,
                        MessageLog& log) {
   const double apart = swept.distance(question.environment);
   const std::string where =
-      apart > 0 ? "their boxes are " + length_text(apart, question.unit) + " apart"
+      apart > 0 ? "their boxes are " + question.length(apart) + " apart"
                 : "the path crosses the environment's box where nothing was scanned";
   log.warn("out-of-reach",
-           "nothing was scanned within " + length_text(cover.reach(), question.unit) +
-               " of the path: " + where + ". " + boxes_text(question, swept) + ". " +
-               likely_remedy(question, cover),
+           "nothing was scanned within " + question.length(cover.reach()) + " of the path: " +
+               where + ". " + boxes_text(question, swept) + ". " + likely_remedy(question, cover),
            {{"gap", apart}, {"reach", cover.reach()}});
 }
 
@@ -274,12 +272,12 @@ void warn_leaves_scan(const Question& question, const PathCover& cover, const Bo
       static_cast<double>(cover.outside()) / static_cast<double>(cover.looked_at());
   const std::uint32_t first = question.number_of(cover.first_outside());
   const std::uint32_t last = question.number_of(cover.last_outside());
-  std::string text = "nothing was scanned within " + length_text(cover.reach(), question.unit) +
-                     " of the " + question.words().mover + " at " + share_text(share) +
-                     " of the poses, on " + length_text(cover.length_outside(), question.unit) +
-                     " of the " + length_text(cover.length(), question.unit) +
-                     " of the path, between pose " + std::to_string(first) + " and pose " +
-                     std::to_string(last) + ": there the result says nothing. ";
+  std::string text = "nothing was scanned within " + question.length(cover.reach()) + " of the " +
+                     question.mover() + " at " + share_text(share) + " of the poses, on " +
+                     question.length(cover.length_outside()) + " of the " +
+                     question.length(cover.length()) + " of the path, between pose " +
+                     std::to_string(first) + " and pose " + std::to_string(last) +
+                     ": there the result says nothing. ";
   std::vector<PoseRange> stretches = cover.stretches_outside();
   for (auto& [from, to] : stretches) {
     from = question.number_of(from);
@@ -361,12 +359,11 @@ bool stays_above_ground(const Question& question, const PathLooks& looks, Messag
   const double usual = heights.at(0.5), spread = heights.spread();
   if (spread > std::max(kSteady * question.metre, usual / 4)) return false;
   log.warn("floats",
-           "along the path the " + std::string(question.words().mover) + " stays " +
-               length_text(usual, question.unit) +
+           "along the path the " + question.mover() + " stays " + question.length(usual) +
                " above the highest point below it, and touches no ground. Does it fly or hang? If "
                "not, the heights of the path are not those of the wheels: they may be those of an "
                "antenna, or count from the ellipsoid and not from the sea, or z = 0 of the " +
-               question.words().mover + " is not where it stands",
+               question.mover() + " is not where it stands",
            {{"height", usual}, {"spread", spread}});
   return true;
 }
@@ -384,10 +381,9 @@ void check_stretches_above(const Question& question, const PathLooks& looks, Mes
   auto numbers = found.numbers;
   numbers.insert(numbers.end(), {{"height", here.at(0.5)}, {"height_elsewhere", rest.at(0.5)}});
   log.warn("floats",
-           found.where + " the " + question.words().mover + " is " +
-               length_text(here.at(0.5), question.unit) +
+           found.where + " the " + question.mover() + " is " + question.length(here.at(0.5)) +
                " above the highest point below it, and on the rest of the path " +
-               length_text(rest.at(0.5), question.unit) +
+               question.length(rest.at(0.5)) +
                ": a part of the scan may be registered at another height, the ground may be "
                "missing there, or the path leaves it. Compare the heights of path and scan there" +
                found.others,
@@ -412,15 +408,15 @@ bool check_depth(const Question& question, const PathLooks& looks, MessageLog& l
   const std::string causes =
       question.is_load()
           ? ". The path is too low"
-          : ". The model is " + length_text(height, question.unit) +
+          : ". The model is " + question.length(height) +
                 " high. Where the ground or what is below a floor is left out, the answer can be "
                 "clear "
                 "although the vehicle does not stand there. Either y points up in the model's "
                 "file, or its origin is in its middle, or the path is too low";
   log.warn("below-ground",
-           "on " + share_text(share) + " of the path the " + question.words().mover +
-               " reaches below the ground, by " + length_text(*middle, question.unit) +
-               " on the median" + causes,
+           "on " + share_text(share) + " of the path the " + question.mover() +
+               " reaches below the ground, by " + question.length(*middle) + " on the median" +
+               causes,
            std::move(numbers));
   return true;
 }

@@ -44,8 +44,7 @@ bool has_either(const Look& look) { return look.left || look.right; }
 bool has_both(const Look& look) { return look.left && look.right; }
 
 std::string beside_text(const Question& question) {
-  return "within " + length_text(kLooksBeside * question.metre, question.unit) +
-         " and at its height";
+  return "within " + question.length(kLooksBeside * question.metre) + " and at its height";
 }
 
 /// stretches: where nothing was scanned below, if there is ground on another part of the path.
@@ -54,7 +53,7 @@ void warn_nothing_below(const Question& question, const PathLooks& looks,
   const double share = 1 - looks.share(has_below);
   log.warn("nothing-below",
            "on " + share_text(share) + " of the path nothing was scanned below the " +
-               question.words().mover +
+               question.mover() +
                ". Does the path run below the "
                "ground, or is it in another place? Did the scanner leave out what was near it? If "
                "you removed the ground on purpose, this is all right",
@@ -65,7 +64,7 @@ void warn_nothing_beside(const Question& question, const PathLooks& looks, Messa
   const double share = 1 - std::max(looks.share(has_left), looks.share(has_right));
   log.warn("nothing-beside",
            "on " + share_text(share) + " of the path nothing was scanned beside the " +
-               question.words().mover + ", " + beside_text(question) +
+               question.mover() + ", " + beside_text(question) +
                ". Was only the ground scanned, or does the path run above a "
                "roof? Compare the heights of path and scan",
            {{"share", share}});
@@ -78,7 +77,7 @@ void warn_one_side(const Question& question, const PathLooks& looks, MessageLog&
   const double empty = 1 - std::min(left, right);
   log.warn("one-side",
            "on " + share_text(empty) + " of the path nothing was scanned on the " + side +
-               " of the " + question.words().mover + ", " + beside_text(question) +
+               " of the " + question.mover() + ", " + beside_text(question) +
                ". On the other side there is something. Was the " + side + " side scanned?",
            {{"share", empty}, {"left", left}, {"right", right}, {"side", number}});
 }
@@ -217,10 +216,10 @@ void tell_resolution(const Question& question, const PathLooks& looks, MessageLo
   const double longest = Sides(question.model).longest;
   const double resolved = 2 * looks.apart();
   if (!(resolved > std::max(kLeastBelow * question.metre, longest))) return;
-  log.note("the scan below and beside the " + std::string(question.words().mover) +
-           " is inspected every " + length_text(looks.apart(), question.unit) +
+  log.note("the scan below and beside the " + question.mover() + " is inspected every " +
+           question.length(looks.apart()) +
            " of the path: a stretch that is not scanned and shorter than " +
-           length_text(resolved, question.unit) + " can stay without a warning");
+           question.length(resolved) + " can stay without a warning");
 }
 
 }  // namespace
@@ -268,10 +267,10 @@ void warn_of_large_radius(const Question& question, MessageLog& log) {
   const bool above_model = longest > 0 && radius > longest;
   if (!above_model && radius <= kLargestRadius * question.metre) return;
   log.warn("radius-size",
-           "the " + std::string(question.words().distance) + " is " +
-               length_text(radius, question.unit) + ", the " + question.words().mover +
-               "'s longest side " + length_text(longest, question.unit) + ". Is the " +
-               question.words().distance + " meant in another unit, such as millimetres?",
+           "the " + std::string(question.words().distance) + " is " + question.length(radius) +
+               ", the " + question.mover() + "'s longest side " + question.length(longest) +
+               ". Is the " + question.words().distance +
+               " meant in another unit, such as millimetres?",
            {{"radius", radius}, {"model_longest", longest}});
 }
 
@@ -293,13 +292,13 @@ void check_steps(const Question& question, MessageLog& log) {
     if (question.steps[k] > kUsualStep * question.metre) step = std::max(step, question.steps[k]);
     if (question.steps[k] < kExact * radius || question.steps[k] == 0) continue;
     axes += std::string(axes.empty() ? "" : ", ") + "xyz"[k];
-    steps += (steps.empty() ? "" : ", ") + length_text(question.steps[k], question.unit);
+    steps += (steps.empty() ? "" : ", ") + question.length(question.steps[k]);
   }
   const std::string distance = is_touching ? "side of a cell" : question.words().distance;
   if (!axes.empty()) {
     log.warn("coarse-digits",
              "the scan's coordinates " + axes + " come in steps of " + steps + ", and the " +
-                 distance + " is " + length_text(radius, question.unit) +
+                 distance + " is " + question.length(radius) +
                  ": a point may be farther than that from where it was measured, so that what "
                  "stands in the way can be missed. Export the scan with more digits, or take a " +
                  distance + " above the steps",
@@ -309,8 +308,8 @@ void check_steps(const Question& question, MessageLog& log) {
   // A radius of ten steps as typed causes no warning because of its rounding.
   if (is_touching || radius >= kSteps * step * (1 - 1e-9)) return;
   log.warn("fine-radius",
-           "the " + distance + " is " + length_text(radius, question.unit) +
-               ", the scan's coordinates are in steps of " + length_text(step, question.unit) +
+           "the " + distance + " is " + question.length(radius) +
+               ", the scan's coordinates are in steps of " + question.length(step) +
                ": rounding decides which points collide. Check the " +
                (question.is_load() ? "margin's" : "radius'") +
                " unit, or store the scan in finer steps",
@@ -329,17 +328,16 @@ void check_coarse_scan(const Question& question, MessageLog& log) {
   const bool is_very_wide = spacing > 2 * radius && spacing > kVeryWide * metre;
   if (!is_wide && !is_very_wide) {
     if (spacing > 2 * radius && spacing > kTold * metre) {
-      log.note("the scan's points are typically " + length_text(spacing, question.unit) +
+      log.note("the scan's points are typically " + question.length(spacing) +
                " apart: what is narrower can stand between them, where the scan does not show it");
     }
     return;
   }
   log.warn("coarse-scan",
-           "the scan's points are typically " + length_text(spacing, question.unit) +
-               " apart. The " + question.words().distance + " is " +
-               length_text(question.query.radius, question.unit) + " and the " +
-               question.words().mover + (question.is_load() ? " may be " : " ") +
-               length_text(width, question.unit) +
+           "the scan's points are typically " + question.length(spacing) + " apart. The " +
+               question.words().distance + " is " + question.length(question.query.radius) +
+               " and the " + question.mover() + (question.is_load() ? " may be " : " ") +
+               question.length(width) +
                " wide: it can pass between the points of what stands in its way. Take a denser "
                "scan or a larger " +
                question.words().distance + ", and check that scan and " +

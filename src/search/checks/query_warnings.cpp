@@ -177,12 +177,12 @@ void warn_of_flat_scan(const Question& question, MessageLog& log) {
 void note_sizes(const Question& question, MessageLog& log) {
   const double length = path_length(question.query.poses);
   const SectionParameters* const asked = question.section;
-  log.note((asked == nullptr ? "model " + size_text(question.model, question.unit)
+  log.note((asked == nullptr ? "model " + question.size()
                              : "load from x = " + format_digits(asked->rear, 3) + " to " +
-                                   length_text(asked->front, question.unit)) +
-           ", path " + length_text(length, question.unit) + " long, environment " +
+                                   question.length(asked->front)) +
+           ", path " + question.length(length) + " long, environment " +
            size_text(question.environment, question.unit) + ", " + question.words().distance + " " +
-           length_text(question.query.radius, question.unit));
+           question.length(question.query.radius));
 }
 
 /// The load of a section is known by its range alone, so its points are not checked.

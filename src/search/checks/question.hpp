@@ -31,6 +31,12 @@ inline constexpr QuestionWords kWordsOfLoad{"load", "margin", "nothing blocks a 
 /// metre: the length of a metre. The defaults of `asked` are filled in.
 Box assumed_load(const SectionParameters& asked, double metre);
 
+/// A length with its unit, for example "12.3 m".
+std::string length_text(double length, LengthUnit unit);
+
+/// The side lengths of a box with their unit, for example "4.5 x 1.9 x 1.5 m".
+std::string size_text(const Box& box, LengthUnit unit);
+
 /// The query, the environment and derived sizes that the checks of a query look at. Owns nothing.
 struct Question {
   /// The environment and the model have at least one point, and the trajectory at least one pose.
@@ -50,6 +56,10 @@ struct Question {
 
   bool is_load() const { return section != nullptr; }
   const QuestionWords& words() const { return is_load() ? kWordsOfLoad : kWordsOfModel; }
+  std::string mover() const { return words().mover; }
+  /// A length, and the size of the model, in sentences.
+  std::string length(double metres) const { return length_text(metres, unit); }
+  std::string size() const { return size_text(model, unit); }
   /// The least z, in its own frame, at which the load may begin: the window of a section may reach
   /// below the wheels, on which z is 0.
   double lowest_of_load() const { return std::min(0.0, section->window->z_from); }
@@ -90,12 +100,6 @@ double scale_of(const Pose& pose);
 
 /// The symbol of a unit of length: "m" or "ft".
 std::string unit_name(LengthUnit unit);
-
-/// A length with its unit, for example "12.3 m".
-std::string length_text(double length, LengthUnit unit);
-
-/// The side lengths of a box with their unit, for example "4.5 x 1.9 x 1.5 m".
-std::string size_text(const Box& box, LengthUnit unit);
 
 /// The range of a box on each axis, for example "x -65.7 to 140, y -79.8 to 92.6, z -16.3 to 5.18".
 std::string extent_text(const Box& box);

@@ -76,10 +76,10 @@ void warn_of_rounded_path(const Question& question, MessageLog& log) {
   if (coarsest == 0) return;
   log.warn("lost-digits",
            "all coordinates " + axes + " of the path are multiples of up to " +
-               length_text(coarsest, question.unit) +
+               question.length(coarsest) +
                ", although its poses are mostly closer together, so they can be wrong by " +
-               length_text(coarsest / 2, question.unit) + ", with a radius of " +
-               length_text(radius, question.unit) + ". Export the path with more digits",
+               question.length(coarsest / 2) + ", with a radius of " + question.length(radius) +
+               ". Export the path with more digits",
            {{"step", coarsest}, {"radius", radius}});
 }
 

@@ -67,12 +67,11 @@ void warn_of_single_precision(const Question& question, std::span<const Vec3> pl
   const auto step = single_precision_step(places, kMatters * radius, question.metre);
   if (!step) return;
   log.warn("single-precision",
-           whose + " are numbers of single precision, which are " +
-               length_text(*step, question.unit) +
+           whose + " are numbers of single precision, which are " + question.length(*step) +
                " apart at these coordinates, so they can be wrong by " +
-               length_text(*step / 2, question.unit) +
+               question.length(*step / 2) +
                (cell > 0 ? ", with a margin or cells of " : ", with a radius of ") +
-               length_text(radius, question.unit) + ". " + remedy,
+               question.length(radius) + ". " + remedy,
            {{"step", *step}, {"radius", radius}});
 }
 

@@ -22,12 +22,12 @@ WarningStretches::WarningStretches(const Question& question, const PathLooks& lo
                          question.number_of(looks.all()[run.last].pose)});
   }
   where = "between pose " + std::to_string(question.number_of(first.pose)) + " and pose " +
-          std::to_string(question.number_of(last.pose)) + " (" + length_text(from, question.unit) +
-          " to " + length_text(to, question.unit) + " along the path)";
+          std::to_string(question.number_of(last.pose)) + " (" + question.length(from) + " to " +
+          question.length(to) + " along the path)";
   if (runs.size() > 1) {
     others = ". The same holds for " +
              counted(runs.size() - 1, "other stretch", "other stretches") + ", " +
-             length_text(sum - looks.length(longest), question.unit) + " long in all";
+             question.length(sum - looks.length(longest)) + " long in all";
   }
   numbers = {{"first_pose", static_cast<double>(question.number_of(first.pose))},
              {"last_pose", static_cast<double>(question.number_of(last.pose))},
