@@ -140,14 +140,10 @@ void SectionDevice::block_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
     report.context_wait_seconds = waiting.seconds();
     return choice;
   };
-  SectionOnGpus taken =
-      block_cells_on_gpus(cloud, ignored, cells, section, memory_bytes, options_, open, progress);
+  ending_ = block_cells_on_gpus(cloud, ignored, cells, section, memory_bytes, options_, open,
+                                progress, report);
   report.device = Device::kCuda;
   report.device_name = name;
-  report.peak_device_bytes = taken.device_bytes;
-  report.needed_host_bytes += taken.host_bytes;
-  report.engine_seconds = taken.engine_seconds;
-  ending_ = std::move(taken.end);
 }
 
 #else

@@ -13,6 +13,19 @@
 #include "search/device_estimate.hpp"
 
 namespace clearway {
+
+#ifndef CLEARWAY_CUDA
+
+// A build without CUDA never has a device.
+int cuda_device_count() { return 0; }
+std::string why_no_cuda_device() {
+  return "this build has no CUDA engine (Clearway has one where it is built with nvcc)";
+}
+CudaDevice open_cuda_device(int) { return {}; }
+bool cuda_device_works(int) noexcept { return false; }
+
+#endif
+
 namespace {
 
 /// Device "auto" does not take a GPU that has less than this free, in bytes.
@@ -29,14 +42,10 @@ std::string name_of(const CudaDevice& device) {
          format_size(device.free_bytes) + " free)";
 }
 
-#ifdef CLEARWAY_CUDA
-
 std::uint64_t wanted_bytes_of(const SearchOptions& options) {
   constexpr std::uint64_t kUsualBytes = std::uint64_t{2} << 30;
   return options.device_memory_bytes > 0 ? options.device_memory_bytes : kUsualBytes;
 }
-
-int count_devices() { return cuda_device_count(); }
 
 void refuse_missing(const std::vector<int>& gpus) {
   if (const std::string why = why_no_cuda_device(); !why.empty()) {
@@ -49,40 +58,6 @@ void refuse_missing(const std::vector<int>& gpus) {
                         std::to_string(count) + " that CUDA can use, numbered from 0");
   }
 }
-
-DeviceChoice choose_cuda(const SearchOptions& options, const MessageLog& log) {
-  const std::uint64_t wanted = wanted_bytes_of(options);
-  std::vector<CudaDevice> devices;
-  for (const int gpu : options.gpus) devices.push_back(open_cuda_device(gpu));
-  if (devices.empty()) {
-    devices.push_back(one_with_room(cuda_device_count(), open_cuda_device, wanted, log));
-  }
-  return choice_of(devices, wanted);
-}
-
-DeviceChoice choose_automatically(const SearchOptions& options, const MessageLog& log) {
-  return automatic_choice(cuda_device_count(), open_cuda_device, wanted_bytes_of(options), log);
-}
-
-bool gpu_works(int gpu) { return cuda_device_works(gpu); }
-
-#else
-
-int count_devices() { return 0; }
-
-bool gpu_works(int) { return false; }
-
-void refuse_missing(const std::vector<int>&) {
-  throw ResourceError(
-      "device cuda: this build has no CUDA engine (Clearway has one where it is built with nvcc)",
-      Remedy::kCpuDevice);
-}
-
-DeviceChoice choose_cuda(const SearchOptions&, const MessageLog&) { return {}; }
-
-DeviceChoice choose_automatically(const SearchOptions&, const MessageLog&) { return {}; }
-
-#endif
 
 }  // namespace
 
@@ -134,16 +109,27 @@ DeviceChoice automatic_choice(int count, const OpenDevice& open, std::uint64_t w
 
 bool may_take_gpus(const SearchOptions& options) {
   if (options.engine == Engine::kKdtree || options.device == Device::kCpu) return false;
-  if (fallback_allowed(options)) return count_devices() > 0;
+  if (fallback_allowed(options)) return cuda_device_count() > 0;
   refuse_missing(options.gpus);
   return true;
 }
 
 DeviceChoice choose_device(const SearchOptions& options, const MessageLog& log) {
-  return fallback_allowed(options) ? choose_automatically(options, log) : choose_cuda(options, log);
+  const std::uint64_t wanted = wanted_bytes_of(options);
+  if (fallback_allowed(options)) {
+    return automatic_choice(cuda_device_count(), open_cuda_device, wanted, log);
+  }
+  std::vector<CudaDevice> devices;
+  for (const int gpu : options.gpus) devices.push_back(open_cuda_device(gpu));
+  if (devices.empty()) {
+    devices.push_back(one_with_room(cuda_device_count(), open_cuda_device, wanted, log));
+  }
+  return choice_of(devices, wanted);
 }
 
-bool still_works(const DeviceChoice& choice) { return std::ranges::all_of(choice.gpus, gpu_works); }
+bool still_works(const DeviceChoice& choice) {
+  return std::ranges::all_of(choice.gpus, cuda_device_works);
+}
 
 DeviceStart::DeviceStart(const SearchOptions& options)
     : DeviceStart(options,

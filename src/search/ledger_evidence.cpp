@@ -23,7 +23,7 @@
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "search/check_query.hpp"
-#include "search/kinds/sweep_kind.hpp"
+#include "search/kinds/cpu_kind.hpp"
 #include "search/kinds/visit_kind.hpp"
 #include "search/seen_space.hpp"
 #include "search/visit.hpp"
@@ -49,8 +49,8 @@ std::vector<std::uint32_t> first_poses(const SmallCloud& cloud, const Query& que
   options.device = Device::kCpu;
   options.threads = threads;
   options.memory_bytes = memory_bytes;
-  const std::unique_ptr<PageEngineKind> kind = visit_kind(
-      cloud, {{query}}, [&](const Query& one) { return cpu_sweep_kind(cloud, one, options); });
+  const std::unique_ptr<PageEngineKind> kind =
+      visit_kind(cloud, {{query}}, [&](const Query& one) { return cpu_kind(cloud, one, options); });
   const BodyNumbers numbers(query);
   // Every page writes the entries of its own points.
   std::vector<std::uint32_t> poses(cloud.point_count(), kNoPose);

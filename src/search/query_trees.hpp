@@ -13,6 +13,14 @@
 
 namespace clearway {
 
+/// make() for the Element that a model consists of: Vec3, Triangle or SolidTriangle.
+template <typename Make>
+auto for_element_of(const Model& model, const Make& make) {
+  if (model.is_solid()) return make.template operator()<SolidTriangle>();
+  if (model.is_surface()) return make.template operator()<Triangle>();
+  return make.template operator()<Vec3>();
+}
+
 /// The trees over a model's points or triangles and over the poses, with which every plan of a
 /// query starts.
 struct QueryTrees {

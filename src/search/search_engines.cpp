@@ -5,10 +5,8 @@
 
 #include "core/util/format.hpp"
 #include "search/device_estimate.hpp"
+#include "search/kinds/cpu_kind.hpp"
 #include "search/kinds/cuda_kind.hpp"
-#include "search/kinds/grid_kind.hpp"
-#include "search/kinds/kdtree_kind.hpp"
-#include "search/kinds/sweep_kind.hpp"
 
 namespace clearway {
 namespace {
@@ -55,15 +53,7 @@ std::unique_ptr<PageEngineKind> SearchEngines::kind([[maybe_unused]] Device devi
       return cuda_kind(cloud, query, options, open, kept);
     }
 #endif
-    switch (options.engine) {
-      case Engine::kGrid:
-        return std::make_unique<CpuGridKind>(cloud, query, options);
-      case Engine::kKdtree:
-        return std::make_unique<KdTreeKind>(cloud, query, options);
-      case Engine::kSweep:
-        break;
-    }
-    return cpu_sweep_kind(cloud, query, options);
+    return cpu_kind(cloud, query, options);
   };
   std::unique_ptr<PageEngineKind> kind = visit_kind(cloud, std::move(questions), make);
   kind->keep_models_in(session_.models(), model_hashes_);

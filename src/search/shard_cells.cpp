@@ -102,9 +102,9 @@ std::vector<std::uint64_t> cell_work_of(const PackedCloud& cloud, const Query& q
 
 std::vector<std::uint64_t> cell_work(const PackedCloud& cloud, const Query& query,
                                      const QueryTrees& trees, int threads) {
-  if (query.model.is_solid()) return cell_work_of<SolidTriangle>(cloud, query, trees, threads);
-  return query.model.is_surface() ? cell_work_of<Triangle>(cloud, query, trees, threads)
-                                  : cell_work_of<Vec3>(cloud, query, trees, threads);
+  return for_element_of(query.model, [&]<typename Element>() {
+    return cell_work_of<Element>(cloud, query, trees, threads);
+  });
 }
 
 std::uint64_t cell_work_bytes(const PackedCloud& cloud, const Query& query) {

@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "search/kinds/cpu_kind.hpp"
 #include "search/kinds/sweep_kind.hpp"
 #include "search/visit.hpp"
 #include "support/catch.hpp"
@@ -60,10 +61,10 @@ std::unique_ptr<PageEngineKind> host_kind(const StoreReader& store, const Questi
   });
 }
 
-std::unique_ptr<PageEngineKind> cpu_kind(const StoreReader& store, const Questions& questions,
-                                         const SearchOptions& options) {
+std::unique_ptr<PageEngineKind> kind_on_cpu(const StoreReader& store, const Questions& questions,
+                                            const SearchOptions& options) {
   return visit_kind(store, questions,
-                    [&](const Query& one) { return cpu_sweep_kind(store, one, options); });
+                    [&](const Query& one) { return cpu_kind(store, one, options); });
 }
 
 /// The answers of a visit to its questions, which reads the coordinates of each cell once.
@@ -125,7 +126,7 @@ TEST_CASE("bodies on devices find what they find on the CPU") {
   }
   const StoreReader store(scan.store);
   const SearchOptions options{.threads = 2};
-  const SearchResult expected = answer_of(store, query, *cpu_kind(store, {{query}}, options));
+  const SearchResult expected = answer_of(store, query, *kind_on_cpu(store, {{query}}, options));
   const SearchResult found = answer_of(store, query, *host_kind(store, {{query}}, options));
   for (std::uint64_t entry = 0; entry < store.entry_count(); ++entry) {
     REQUIRE(found.hits.contains(entry) == expected.hits.contains(entry));
@@ -159,12 +160,13 @@ TEST_CASE("a visit of several questions has the answers of visits of one") {
   const SearchOptions options{.threads = 3};
   std::vector<SearchResult> alone;
   for (const VisitQuestion& one : questions) {
-    alone.push_back(std::move(answers_of(store, {one}, *cpu_kind(store, {one}, options)).front()));
+    alone.push_back(
+        std::move(answers_of(store, {one}, *kind_on_cpu(store, {one}, options)).front()));
   }
   for (const bool on_host : {false, true}) {
     CAPTURE(on_host);
     const auto kind =
-        on_host ? host_kind(store, questions, options) : cpu_kind(store, questions, options);
+        on_host ? host_kind(store, questions, options) : kind_on_cpu(store, questions, options);
     const std::vector<SearchResult> found = answers_of(store, questions, *kind);
     for (std::size_t i = 0; i < questions.size(); ++i) {
       CAPTURE(i);

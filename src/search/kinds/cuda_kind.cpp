@@ -217,16 +217,10 @@ std::unique_ptr<PageEngineKind> cuda_kind(const PackedCloud& cloud, const Query&
   if (options.engine == Engine::kGrid) {
     return std::make_unique<CudaGridKind>(cloud, query, options, std::move(open), settings.grid);
   }
-  if (query.model.is_solid()) {
-    return std::make_unique<CudaSweepKindOf<SolidTriangle>>(cloud, query, options, std::move(open),
-                                                            kept, settings);
-  }
-  if (query.model.is_surface()) {
-    return std::make_unique<CudaSweepKindOf<Triangle>>(cloud, query, options, std::move(open), kept,
-                                                       settings);
-  }
-  return std::make_unique<CudaSweepKindOf<Vec3>>(cloud, query, options, std::move(open), kept,
-                                                 settings);
+  return for_element_of(query.model, [&]<typename Element>() -> std::unique_ptr<PageEngineKind> {
+    return std::make_unique<CudaSweepKindOf<Element>>(cloud, query, options, std::move(open), kept,
+                                                      settings);
+  });
 }
 
 namespace {
@@ -304,10 +298,10 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
   return counts;
 }
 
-SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
-                                  std::span<const PlannedCell> cells, const SectionRef& section,
-                                  std::uint64_t memory_bytes, const SearchOptions& options,
-                                  OpenGpus open, Progress& progress) {
+EngineEnd block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
+                              std::span<const PlannedCell> cells, const SectionRef& section,
+                              std::uint64_t memory_bytes, const SearchOptions& options,
+                              OpenGpus open, Progress& progress, SectionReport& report) {
   const std::span entries(section.entries, section.entry_count());
   Gpus gpus(std::move(open), options.end_gpus);
   PageEngineNeeds needs = needs_of(cloud, options, 1);
@@ -323,12 +317,11 @@ SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
       .kept = gpus.size() > 1 ? entries.size_bytes() : 0};
   const SlotLayout layout =
       layout_that_fits(cloud, cells, ignored.any(), bytes, memory_bytes, needs);
-  SectionOnGpus taken;
   const Stopwatch making;
   PageEngines engines = gpus.engines([&](int gpu) -> std::unique_ptr<PageEngine> {
     return std::make_unique<CudaSectionEngine>(gpu, section, cloud, layout);
   });
-  taken.engine_seconds = making.seconds();
+  const double engine_seconds = making.seconds();
   const std::vector<PageEngine*> lanes = lanes_of(engines);
   StageTimes times;
   run_pages(
@@ -338,8 +331,8 @@ SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
   std::vector<std::uint32_t> of_device;
   for (const PageEngine* lane : lanes) {
     const auto& engine = dynamic_cast<const CudaSectionEngine&>(*lane);
-    taken.device_bytes = std::max(taken.device_bytes, engine.device_bytes());
-    taken.host_bytes += engine.pinned_bytes();
+    report.peak_device_bytes = std::max(report.peak_device_bytes, engine.device_bytes());
+    report.needed_host_bytes += engine.pinned_bytes();
     if (lane == lanes.front()) {
       engine.read_entries(entries);
       continue;
@@ -350,9 +343,9 @@ SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints&
       entries[i] = std::min(entries[i], of_device[i]);
     }
   }
-  taken.host_bytes += bytes.kept + run_pages_bytes(cells.size());
-  taken.end = gpus.end(std::move(engines));
-  return taken;
+  report.needed_host_bytes += bytes.kept + run_pages_bytes(cells.size());
+  report.engine_seconds = engine_seconds;
+  return gpus.end(std::move(engines));
 }
 
 }  // namespace clearway

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 
+#include "clearway/section.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/section/section_ref.hpp"
 #include "core/seen/beams.hpp"
@@ -37,22 +38,14 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
                                 const SearchOptions& options, OpenGpus open, Progress& progress,
                                 SearchReport& report);
 
-/// What a search for a section took, and the end of its engines.
-struct SectionOnGpus {
-  std::uint64_t device_bytes = 0;  ///< of the GPU that took most
-  std::uint64_t host_bytes = 0;
-  double engine_seconds = 0;  ///< for making the engines
-  EngineEnd end;
-};
-
 /// Blocks the cells of a section by the points of these cells, whose nodes are those of
 /// bins_in_reach(), on the GPUs that `open` gives, page by page, and writes the entries of its
-/// maps. memory_bytes: bytes that this may take on the host. options.threads is not 0. Only in a
-/// build with CUDA. Throws ResourceError and Interrupted; the entries may then be those that some
-/// of the points make.
-SectionOnGpus block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
-                                  std::span<const PlannedCell> cells, const SectionRef& section,
-                                  std::uint64_t memory_bytes, const SearchOptions& options,
-                                  OpenGpus open, Progress& progress);
+/// maps. memory_bytes: bytes that this may take on the host. options.threads is not 0. Adds to
+/// `report` what this took. Only in a build with CUDA. Throws ResourceError and Interrupted; the
+/// entries may then be those that some of the points make.
+EngineEnd block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
+                              std::span<const PlannedCell> cells, const SectionRef& section,
+                              std::uint64_t memory_bytes, const SearchOptions& options,
+                              OpenGpus open, Progress& progress, SectionReport& report);
 
 }  // namespace clearway

@@ -5,6 +5,7 @@
 #include "core/cloud/packed_cloud.hpp"
 #include "core/grid/grid_scene.hpp"
 #include "core/page/model_reach.hpp"
+#include "core/util/format.hpp"
 #include "search/kinds/page_engine_kind.hpp"
 
 namespace clearway {
@@ -20,12 +21,20 @@ class GridKind : public PageEngineKind {
         query_(query),
         scene_options_(scene_options) {}
 
-  const PoseReach& build_index(const QueryTrees& trees, std::uint64_t most_bytes) override;
+  const PoseReach& build_index(const QueryTrees& trees, std::uint64_t) override {
+    scene_.emplace(query_, trees.motion, cloud_, scene_options_);
+    return reach_.emplace(query_, trees.motion, trees.of<Vec3>(), cloud_);
+  }
   std::uint64_t index_bytes() const override { return scene_->size_bytes(); }
   double grid_cell() const { return scene_->grid_cell(); }  ///< once there is an index
 
  protected:
-  void log_statistics(const GridStatistics& statistics, const MessageLog& log) const;
+  void log_statistics(const GridStatistics& s, const MessageLog& log) const {
+    log.note("grid cell " + format_brief(grid_cell()) + " m; tests: " +
+             format_count(s.sphere_tests) + " of spheres, " + format_count(s.searches) + " of " +
+             format_count(s.points_moved) + " moved points searched, " +
+             format_count(s.point_tests) + " in float, " + format_count(s.exact_tests) + " exact");
+  }
 
   const PackedCloud& cloud_;
   const Query& query_;
@@ -34,18 +43,6 @@ class GridKind : public PageEngineKind {
  private:
   GridOptions scene_options_;
   std::optional<ModelReach> reach_;
-};
-
-class CpuGridKind final : public GridKind {
- public:
-  /// options.threads is not 0.
-  CpuGridKind(const PackedCloud& cloud, const Query& query, const SearchOptions& options,
-              const GridOptions& scene_options = {});
-
-  std::uint64_t host_bytes(const SlotLayout& layout, std::uint64_t most_poses) const override;
-  PageEngines make(const SlotLayout& layout) override;
-  void report_search(EngineList engines, SearchReport& report,
-                     const MessageLog& log) const override;
 };
 
 }  // namespace clearway

@@ -26,10 +26,6 @@ using EngineList = std::span<const PageEngine* const>;
 /// Engines that are being taken down on other threads. Its destructor waits for them.
 using EngineEnd = std::vector<std::future<void>>;
 
-/// How many slots an engine on the CPU has besides those being searched, for pages that are read
-/// at the same time.
-inline constexpr std::uint32_t kSlotsAhead = 2;
-
 /// Settings of the engines that only experiments change. In single precision an answer is not
 /// exact.
 struct EngineSettings {
@@ -58,6 +54,20 @@ struct PageEngineNeeds {
   /// Once devices are resolved, the name that refuse_device_memory() takes.
   std::string short_device = {};
 };
+
+/// The needs of an engine on the CPU. It has two slots besides those being searched, for pages that
+/// are read at the same time.
+inline PageEngineNeeds cpu_needs(const SearchOptions& options) {
+  return {.most_slots = static_cast<std::uint32_t>(options.threads) + 2,
+          .threads = options.threads};
+}
+
+/// The engines of a search on the CPU, which has only one.
+inline PageEngines only(std::unique_ptr<PageEngine> engine) {
+  PageEngines engines;
+  engines.push_back(std::move(engine));
+  return engines;
+}
 
 /// An engine that works on pages, before it is made: builds its index of the query, with which the
 /// cells are planned, says how much memory it takes, and makes the engines.

@@ -8,8 +8,8 @@
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/paths/content_hash.hpp"
+#include "search/kinds/cpu_kind.hpp"
 #include "search/kinds/grid_kind.hpp"
-#include "search/kinds/sweep_kind.hpp"
 #include "search/result_header.hpp"
 #include "search/visit.hpp"
 #include "stream/search_journal.hpp"
@@ -44,10 +44,7 @@ std::unique_ptr<PageEngineKind> kind_of(const StoreReader& store, const Query& q
     return cuda_kind(store, query, options, open, nullptr, asked.settings);
   }
 #endif
-  if (options.engine == Engine::kGrid) {
-    return std::make_unique<CpuGridKind>(store, query, options, asked.settings.grid);
-  }
-  return cpu_sweep_kind(store, query, options, asked.settings);
+  return cpu_kind(store, query, options, asked.settings);
 }
 
 Json seconds_of(const SearchSeconds& seconds, double inputs, double total) {
