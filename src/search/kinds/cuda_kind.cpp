@@ -329,10 +329,11 @@ EngineEnd block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ign
       {.stage = "section", .masks = ignored.any() ? &ignored : nullptr, .threads = needs.threads},
       [](std::span<const PlannedCell>, const PageResult&) {}, progress, times);
   std::vector<std::uint32_t> of_device;
+  std::uint64_t device_bytes = 0, host_bytes = bytes.kept + run_pages_bytes(cells.size());
   for (const PageEngine* lane : lanes) {
     const auto& engine = dynamic_cast<const CudaSectionEngine&>(*lane);
-    report.peak_device_bytes = std::max(report.peak_device_bytes, engine.device_bytes());
-    report.needed_host_bytes += engine.pinned_bytes();
+    device_bytes = std::max(device_bytes, engine.device_bytes());
+    host_bytes += engine.pinned_bytes();
     if (lane == lanes.front()) {
       engine.read_entries(entries);
       continue;
@@ -343,7 +344,9 @@ EngineEnd block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ign
       entries[i] = std::min(entries[i], of_device[i]);
     }
   }
-  report.needed_host_bytes += bytes.kept + run_pages_bytes(cells.size());
+  // Nothing failed, so that the report is that of the GPUs.
+  report.peak_device_bytes = device_bytes;
+  report.needed_host_bytes += host_bytes;
   report.engine_seconds = engine_seconds;
   return gpus.end(std::move(engines));
 }

@@ -40,9 +40,9 @@ BeamCounts follow_beams_on_gpus(const PackedCloud& cloud, std::span<const Planne
 
 /// Blocks the cells of a section by the points of these cells, whose nodes are those of
 /// bins_in_reach(), on the GPUs that `open` gives, page by page, and writes the entries of its
-/// maps. memory_bytes: bytes that this may take on the host. options.threads is not 0. Adds to
-/// `report` what this took. Only in a build with CUDA. Throws ResourceError and Interrupted; the
-/// entries may then be those that some of the points make.
+/// maps. memory_bytes: bytes that this may take on the host. options.threads is not 0. Tells
+/// `report` what this took, unless it fails. Only in a build with CUDA. Throws ResourceError and
+/// Interrupted; the entries may then be those that some of the points make.
 EngineEnd block_cells_on_gpus(const PackedCloud& cloud, const IgnoredPoints& ignored,
                               std::span<const PlannedCell> cells, const SectionRef& section,
                               std::uint64_t memory_bytes, const SearchOptions& options,
