@@ -25,7 +25,7 @@ struct QuestionFacts {
 bool has_budget(const Query& query) { return query.has_budget(); }
 bool ignores_points(const Query& query) { return query.ignores_points(); }
 
-/// Of each question, in their order.
+/// What is known of each question, in the order of PointQuestion.
 constexpr std::array<QuestionFacts, kQuestions> kFacts{{
     {.name = "hits", .is_asked = [](const Query&) { return true; }, .first_poses = true},
     {"clearances",

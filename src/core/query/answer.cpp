@@ -1,21 +1,39 @@
 #include "clearway/answer.hpp"
 
 #include <algorithm>
-#include <array>
 
 #include "core/messages/message_table.hpp"
 
 namespace clearway {
 
 const char* name_of(Verdict verdict) {
-  constexpr std::array kNames{"clear", "conflict", "undecided", "unknown"};
-  return kNames[static_cast<std::size_t>(verdict)];
+  switch (verdict) {
+    case Verdict::kClear:
+      return "clear";
+    case Verdict::kConflict:
+      return "conflict";
+    case Verdict::kUndecided:
+      return "undecided";
+    case Verdict::kUnknown:
+      break;
+  }
+  return "unknown";
 }
 
 const char* name_of(Reason reason) {
-  constexpr std::array kNames{"near", "few", "errors-exceed-margin", "not-scanned",
-                              "question-in-doubt"};
-  return kNames[static_cast<std::size_t>(reason)];
+  switch (reason) {
+    case Reason::kNear:
+      return "near";
+    case Reason::kFew:
+      return "few";
+    case Reason::kErrorsExceedMargin:
+      return "errors-exceed-margin";
+    case Reason::kNotScanned:
+      return "not-scanned";
+    case Reason::kQuestionInDoubt:
+      break;
+  }
+  return "question-in-doubt";
 }
 
 namespace {

@@ -1,7 +1,6 @@
 #include "clearway/section.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -23,14 +22,35 @@
 namespace clearway {
 
 const char* name_of(SectionVerdict verdict) {
-  constexpr std::array kNames{"passes", "stopped", "unknown"};
-  return kNames[static_cast<std::size_t>(verdict)];
+  switch (verdict) {
+    case SectionVerdict::kPasses:
+      return "passes";
+    case SectionVerdict::kStopped:
+      return "stopped";
+    case SectionVerdict::kUnknown:
+      break;
+  }
+  return "unknown";
 }
 
 const char* name_of(SectionTable table) {
-  constexpr std::array kNames{"bands",         "stations",         "boxes", "cells", "bin-cells",
-                              "unknown-cells", "unknown-bin-cells"};
-  return kNames[static_cast<std::size_t>(table)];
+  switch (table) {
+    case SectionTable::kBands:
+      return "bands";
+    case SectionTable::kStations:
+      return "stations";
+    case SectionTable::kBoxes:
+      return "boxes";
+    case SectionTable::kCells:
+      return "cells";
+    case SectionTable::kUnknownCells:
+      return "unknown-cells";
+    case SectionTable::kUnknownBinCells:
+      return "unknown-bin-cells";
+    case SectionTable::kBinCells:
+      break;
+  }
+  return "bin-cells";
 }
 
 void SectionCells::reserve(std::size_t cells) {

@@ -115,9 +115,25 @@ SlopedValue raise_of(const SlopedValue& cant, CantLine line) {
   // On the border between a left and a right curve the direction of the change decides.
   const bool to_the_right = cant.value > 0 || (cant.value == 0 && cant.slope >= 0);
   const double side = to_the_right ? 1 : -1;
-  // Of kFile, kNone, kCenter, kInsideRail, kOutsideRail, kLeftRail and kRightRail.
-  const double shares[] = {0, 0, 0, side, -side, -1, 1};
-  const double share = shares[static_cast<std::size_t>(line)];
+  double share = 0;
+  switch (line) {
+    case CantLine::kFile:
+    case CantLine::kNone:
+    case CantLine::kCenter:
+      break;
+    case CantLine::kInsideRail:
+      share = side;
+      break;
+    case CantLine::kOutsideRail:
+      share = -side;
+      break;
+    case CantLine::kLeftRail:
+      share = -1;
+      break;
+    case CantLine::kRightRail:
+      share = 1;
+      break;
+  }
   return {share * cant.value / 2, share * cant.slope / 2};
 }
 

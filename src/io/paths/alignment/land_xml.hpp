@@ -93,7 +93,7 @@ class LandXml : public XmlText {
   /// The place of the only child of that name: easting + i northing in metres. Throws where it
   /// stands twice or refers to a point that stands elsewhere.
   std::optional<std::complex<double>> find_place(pugi::xml_node parent, const char* name) const;
-  /// The same; throws where it is missing.
+  /// The place that find_place() finds. Throws also where it is missing.
   std::complex<double> place(pugi::xml_node parent, const char* name) const;
 
  private:
