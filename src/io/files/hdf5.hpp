@@ -73,7 +73,7 @@ class Id {
 
 /// Runs `call` quietly. A CallFailure becomes a ResourceError with the file's name in front.
 template <typename Call>
-auto naming(const std::string& file, Call call) {
+decltype(auto) naming(const std::string& file, Call call) {
   const QuietScope quiet;
   try {
     return call();

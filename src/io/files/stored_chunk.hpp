@@ -15,9 +15,6 @@ inline constexpr std::size_t kChecksumBytes = 4;
 /// rows end with a chunk whatever the columns are, or all rows where these are fewer.
 std::uint64_t rows_of_chunk(std::uint64_t rows, std::uint64_t row_bytes);
 
-/// The checksum of HDF5's fletcher32 filter.
-std::uint32_t fletcher32(std::span<const std::byte> bytes);
-
 /// Writes the checksum of a chunk's other bytes into its last four.
 void seal_chunk(std::span<std::byte> chunk);
 

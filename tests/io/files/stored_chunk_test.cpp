@@ -1,3 +1,4 @@
+#include "io/files/fletcher32.hpp"
 #include "io/files/stored_chunk.hpp"
 
 #include <cstring>
