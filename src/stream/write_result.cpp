@@ -196,7 +196,7 @@ std::shared_ptr<WritePiece<Rows>> encode(const ResultWriter& writer, const RowMe
   return out;
 }
 
-/// Encodes rows, kEncodedRows at a time, on many threads, and hashes and writes them in order.
+/// Encodes rows, kPieceRows at a time, on many threads, and writes them in order.
 /// at_once: greatest number of pieces in memory. Throws as ResultWriter does, and Interrupted when
 /// the progress asks to stop.
 template <typename Row>
@@ -205,20 +205,16 @@ void write_rows(ResultWriter& writer, const RowMeaning& meaning, std::span<const
   using Piece = std::shared_ptr<WritePiece<TableOf<Row>>>;
   std::size_t next = 0;
   const ParallelScope scope;
-  const SerialStage input, hashed, output;
+  const SerialStage input, output;
   const auto take = piece_of(scope, input, [&](tbb::flow_control& flow) {
     throw_if_stopped(progress);
     const std::size_t first = next;
-    next = std::min(rows.size(), first + kEncodedRows);
+    next = std::min(rows.size(), first + kPieceRows);
     if (first == next) flow.stop();
     return rows.subspan(first, next - first);
   });
   const auto encoded = piece_of(
       scope, [&](std::span<const Row> piece) -> Piece { return encode(writer, meaning, piece); });
-  const auto hash = piece_of(scope, hashed, [&](const Piece& piece) {
-    writer.hash(piece->rows);
-    return piece;
-  });
   const auto write = piece_of(scope, output, [&](const Piece& piece) {
     writer.write(piece->rows);
     add_summary(piece->summary, summary);
@@ -230,7 +226,6 @@ void write_rows(ResultWriter& writer, const RowMeaning& meaning, std::span<const
       at_once, tbb::make_filter<void, std::span<const Row>>(kInOrder, take) &
                    tbb::make_filter<std::span<const Row>, Handed<Piece>>(tbb::filter_mode::parallel,
                                                                          encoded) &
-                   tbb::make_filter<Handed<Piece>, Handed<Piece>>(kInOrder, hash) &
                    tbb::make_filter<Handed<Piece>, void>(kInOrder, write));
 }
 
@@ -247,12 +242,12 @@ auto classes_of(const StoreReader& store, std::uint32_t cell) {
 /// Memory for chunks that the file's writer holds back, and for what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
 
-/// Bytes that a piece of kEncodedRows encoded rows takes in memory.
+/// Bytes that a piece of kPieceRows encoded rows takes in memory.
 constexpr std::uint64_t kPieceBytes = std::uint64_t{3} << 20;
 
 /// Least number of rows of a pass. With fewer, a part might not fit beside what is left of the part
 /// before.
-constexpr std::size_t kLeastRows = kEncodedRows + SourceParts::kMostRows;
+constexpr std::size_t kLeastRows = kPieceRows + SourceParts::kMostRows;
 
 /// Least memory with which one thread gathers.
 constexpr std::uint64_t kLeastThreadBytes = std::uint64_t{1} << 20;
@@ -432,7 +427,7 @@ class ResultRows {
     return RowFinder(answer_.read(cell, question));
   }
 
-  /// Gathers the rows of a table in passes, each with a multiple of kEncodedRows rows except the
+  /// Gathers the rows of a table in passes, each with a multiple of kPieceRows rows except the
   /// last.
   template <typename Row, typename RowsOf, typename Take>
   void gather(RowsOf rows_of, Take take) {
@@ -457,7 +452,7 @@ class ResultRows {
       for (std::size_t part = first; part < end; ++part) count += counts[part];
       arena.execute(
           [&] { gather->gather(first, end, rows.subspan(kept, count - kept), copies, rows_of); });
-      const std::size_t whole = end == counts.size() ? count : count - count % kEncodedRows;
+      const std::size_t whole = end == counts.size() ? count : count - count % kPieceRows;
       take(std::span<const Row>(rows.first(whole)), taken, plan.pieces);
       taken += whole;
       std::copy(rows.begin() + static_cast<std::ptrdiff_t>(whole),

@@ -134,7 +134,7 @@ ordered_json describe(const SectionData& section) {
 ordered_json question_json(const ResultReader& result) {
   const ResultHeader& h = result.header();
   ordered_json description{{"kind", "result"},
-                           {"version", result_names::kVersion},
+                           {"version", kResultVersion},
                            {"colliding_points", result.collisions()},
                            {"environment_points", h.environment_points},
                            {"radius", h.radius},

@@ -329,33 +329,6 @@ std::string read_text_attribute(const Id& object, const std::string& name,
   return text;
 }
 
-std::uint64_t hash_of_attributes(const Id& object, const std::string& file) {
-  std::vector<std::string> names;
-  const auto add_name = [](hid_t, const char* name, const H5A_info_t*, void* all) -> herr_t {
-    static_cast<std::vector<std::string>*>(all)->emplace_back(name);
-    return 0;
-  };
-  check(H5Aiterate2(object.get(), H5_INDEX_NAME, H5_ITER_INC, nullptr, add_name, &names),
-        file + ": list attributes");
-  ColumnHashes all;
-  for (const std::string& name : names) {
-    const auto [attribute, type, numbers] = open_attribute(object, name, file);
-    const std::size_t size = H5Tget_size(type.get()), count = static_cast<std::size_t>(numbers);
-    const H5T_class_t kind = H5Tget_class(type.get());
-    const bool is_plain = (kind == H5T_INTEGER || kind == H5T_FLOAT || kind == H5T_STRING) &&
-                          H5Tis_variable_str(type.get()) == 0;
-    if (!is_plain || size > kLongestText || count > kLongestText) {
-      malformed(file, name, "numbers or a text of at most 1 MiB");
-    }
-    const std::size_t bytes = size * count;
-    std::vector<std::byte> value(bytes);
-    check(H5Aread(attribute.get(), type.get(), value.data()), file + ": read " + name);
-    all.add(name);
-    all.add(value);
-  }
-  return all.digest();
-}
-
 #define CLEARWAY_INSTANTIATE(Number)                                                      \
   template void write_attribute(const Id&, const std::string&, std::span<const Number>,   \
                                 std::uint64_t);                                           \

@@ -163,26 +163,6 @@ Number read_number(const Id& object, const std::string& name, const std::string&
 }
 std::string read_text_attribute(const Id& object, const std::string& name, const std::string& file);
 
-/// Hashes the names and values of all attributes of an object, in the order of their names.
-std::uint64_t hash_of_attributes(const Id& object, const std::string& file);
-
-/// The chunks that Rows::read_chunks() read. Their memory is used again by the next call.
-class StoredChunks {
- public:
-  std::size_t size() const { return count_; }
-  std::span<const std::byte> operator[](std::size_t i) const {
-    return {memory_.get() + i * chunk_bytes_, chunk_bytes_};
-  }
-
-  /// Makes room for so many chunks, whose bytes are not set.
-  void resize(std::size_t count, std::size_t chunk_bytes);
-  std::byte* data(std::size_t i) { return memory_.get() + i * chunk_bytes_; }
-
- private:
-  std::unique_ptr<std::byte[]> memory_;
-  std::size_t allocated_ = 0, count_ = 0, chunk_bytes_ = 0;
-};
-
 /// A one- or two-dimensional dataset written or read by ranges of rows.
 template <typename Number>
 class Rows {
@@ -196,21 +176,9 @@ class Rows {
 
   std::uint64_t rows() const { return rows_; }
   void write(std::uint64_t first_row, std::span<const Number> values);
-  /// Creates the index of a dataset that has rows, as the first write() does. Needed before
-  /// write_chunk().
-  void make_index();
-  /// Writes a whole chunk in the form of stored_chunk.hpp to the end of the file. Requires
-  /// make_index(), and that all chunks of the dataset are written in this way, without write().
-  void write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk);
   /// Closes the dataset after the last write, whose failure may appear only here.
   void close();
   void read(std::uint64_t first_row, std::span<Number> values) const;
-  /// Reads the chunks of rows from `first_row`, which begins a chunk, in the form of
-  /// stored_chunk.hpp and unchecked. use(i) is called when chunks[i] is read. Returns false where
-  /// they are stored in another way or cannot be read; read() then says what is wrong.
-  bool read_chunks(std::uint64_t first_row, std::uint64_t row_count, StoredChunks& chunks,
-                   const std::function<void(std::size_t)>& use) const;
-  /// Number of rows in a chunk that read_chunks() returns.
   std::uint64_t chunk_rows() const;
 
  private:
@@ -222,8 +190,6 @@ class Rows {
   std::uint64_t columns_ = 0;
   std::string name_;
   std::string file_;  ///< name of the file in which it was opened
-  /// Whether an opened dataset has the chunks that the other constructor gives it.
-  bool has_usual_chunks_ = false;
 };
 
 }  // namespace clearway::hdf5

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <functional>
 #include <tuple>
@@ -7,15 +8,16 @@
 
 #include "clearway/error.hpp"
 #include "io/files/hdf5_detail.hpp"
-#include "io/files/stored_chunk.hpp"
 
 namespace clearway::hdf5 {
 namespace {
 
 constexpr hsize_t kChunkBytes = 1 << 18;  // most bytes of a chunk
 
-// Filter mask of a chunk, whose bits are the filters that were left out.
-constexpr std::uint32_t kAllFilters = 0;
+std::uint64_t rows_of_chunk(std::uint64_t rows, std::uint64_t row_bytes) {
+  const std::uint64_t most = std::bit_floor(std::max<std::uint64_t>(1, kChunkBytes / row_bytes));
+  return std::min<std::uint64_t>({rows, most, 1 << 16});
+}
 
 /// Properties of a dataset that is chunked with fletcher32; an empty dataset has no chunks.
 Id checked_layout(std::uint64_t rows, std::uint64_t columns, std::size_t number_bytes) {
@@ -149,12 +151,6 @@ Rows<Number> Rows<Number>::open(const Id& parent, const std::string& name, std::
   rows.columns_ = columns;
   rows.name_ = name;
   rows.file_ = file;
-  const Id list(H5Dget_create_plist(rows.dataset_.get()), H5Pclose, name);
-  std::array<hsize_t, 2> chunk{};
-  const int dimensions = columns == 0 ? 1 : 2;
-  rows.has_usual_chunks_ = rows.rows_ > 0 &&
-                           H5Pget_chunk(list.get(), dimensions, chunk.data()) == dimensions &&
-                           chunk[0] == rows.chunk_rows() && chunk[1] == columns;
   return rows;
 }
 
@@ -181,20 +177,6 @@ void Rows<Number>::write(std::uint64_t first_row, std::span<const Number> values
 }
 
 template <typename Number>
-void Rows<Number>::make_index() {
-  const std::vector<Number> row(std::max<std::uint64_t>(columns_, 1));
-  write(0, row);
-}
-
-template <typename Number>
-void Rows<Number>::write_chunk(std::uint64_t first_row, std::span<const std::byte> chunk) {
-  const std::array<hsize_t, 2> at{first_row, 0};
-  check(H5Dwrite_chunk(dataset_.get(), H5P_DEFAULT, kAllFilters, at.data(), chunk.size(),
-                       chunk.data()),
-        "write dataset " + name_);
-}
-
-template <typename Number>
 void Rows<Number>::close() {
   dataset_.close("write dataset " + name_);
 }
@@ -213,40 +195,6 @@ void Rows<Number>::read(std::uint64_t first_row, std::span<Number> values) const
 template <typename Number>
 std::uint64_t Rows<Number>::chunk_rows() const {
   return rows_of_chunk(rows_, std::max<std::uint64_t>(columns_, 1) * sizeof(Number));
-}
-
-void StoredChunks::resize(std::size_t count, std::size_t chunk_bytes) {
-  if (count * chunk_bytes > allocated_) {
-    memory_ = std::make_unique_for_overwrite<std::byte[]>(count * chunk_bytes);
-    allocated_ = count * chunk_bytes;
-  }
-  count_ = count;
-  chunk_bytes_ = chunk_bytes;
-}
-
-template <typename Number>
-bool Rows<Number>::read_chunks(std::uint64_t first_row, std::uint64_t row_count,
-                               StoredChunks& chunks,
-                               const std::function<void(std::size_t)>& use) const {
-  if (!has_usual_chunks_) return false;
-  const std::uint64_t row_bytes = std::max<std::uint64_t>(columns_, 1) * sizeof(Number);
-  const std::uint64_t bytes = chunk_rows() * row_bytes + kChecksumBytes;
-  const std::uint64_t count = (row_count + chunk_rows() - 1) / chunk_rows();
-  chunks.resize(count, bytes);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const std::array<hsize_t, 2> at{first_row + i * chunk_rows(), 0};
-    hsize_t stored = 0;
-    if (H5Dget_chunk_storage_size(dataset_.get(), at.data(), &stored) < 0) return false;
-    if (stored != bytes) return false;
-    std::uint32_t filters_left_out = 0;
-    if (H5Dread_chunk(dataset_.get(), H5P_DEFAULT, at.data(), &filters_left_out, chunks.data(i)) <
-        0) {
-      return false;
-    }
-    if (filters_left_out != kAllFilters) return false;
-    use(i);
-  }
-  return true;
 }
 
 #define CLEARWAY_INSTANTIATE(Number)                                                      \

@@ -556,6 +556,11 @@ TableFile::TableFile(const std::filesystem::path& path, std::span<const TableFil
 
 TableFile::TableFile(TableFile&&) noexcept = default;
 
+TableFile& TableFile::operator=(TableFile&& other) noexcept {
+  std::swap(state_, other.state_);
+  return *this;
+}
+
 TableFile::~TableFile() {
   const hdf5::QuietScope quiet;
   state_.reset();

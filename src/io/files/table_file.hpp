@@ -242,6 +242,7 @@ class TableFile {
   TableFile(const std::filesystem::path& path, const TableFileKind& kind)
       : TableFile(path, std::span(&kind, 1)) {}
   TableFile(TableFile&&) noexcept;
+  TableFile& operator=(TableFile&& other) noexcept;
   ~TableFile();
 
   const std::string& name() const;  ///< path of the file, for messages

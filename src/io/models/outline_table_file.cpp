@@ -116,8 +116,8 @@ class TableOfOutlines {
   const OutlineOptions& options_;
   std::vector<Message>* messages_;
   OutlineTable table_;
-  TableColumn from_, to_;
-  std::optional<TableColumn> outline_, margin_;                ///< no outline: before the header
+  TextColumn from_, to_;
+  std::optional<TextColumn> outline_, margin_;                ///< no outline: before the header
   std::map<std::string, std::vector<OutlinePoint>> outlines_;  ///< by the names in the table
 };
 

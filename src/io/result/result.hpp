@@ -5,65 +5,148 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"
-#include "io/result/encoded_rows.hpp"
+#include "io/files/table_file.hpp"
 #include "io/result/result_header.hpp"
 #include "io/result/tables.hpp"
 
 namespace clearway {
 
-/// Writes the datasets that docs/design/result-format.md lists and the header asks for to a file of
+inline constexpr std::uint32_t kResultVersion = 7;
+/// A whole result, and a part, which no reader takes for a result.
+inline constexpr TableFileKind kResultKinds[]{
+    {"clearway result", kResultVersion, "a result", "clearway run", "run it again"},
+    {"clearway part", kResultVersion, "a part of a result", "clearway run --shard", "run it again"}};
+
+/// The values of the columns that a result with this header has. Throws std::logic_error where
+/// others have values, or where their lengths differ.
+template <typename Rows>
+std::vector<ColumnBytes> bytes_of(const Rows& rows, const ResultHeader& header) {
+  std::vector<ColumnBytes> columns;
+  for_each_column<Rows>([&](const auto& column) {
+    const auto& values = rows.*column.values;
+    if (values.size() != (column.is_in(header) ? rows.size() : 0)) {
+      throw std::logic_error("ResultWriter: rows of unequal lengths");
+    }
+    if (column.is_in(header)) columns.push_back(std::as_bytes(std::span(values)));
+  });
+  return columns;
+}
+
+/// Consecutive rows of a table, encoded by any thread for ResultWriter to write.
+template <typename Rows>
+class EncodedRows {
+ public:
+  EncodedRows(TablePiece piece, const ResultHeader& header)
+      : piece_(std::move(piece)), header_(&header) {}
+
+  std::size_t size() const { return piece_.size(); }
+
+  /// Appends rows, so that there are at most kPieceRows in all. Throws std::logic_error for columns
+  /// of unequal lengths, where those that are not written must be empty, and for rows out of order.
+  void add(const Rows& rows) {
+    piece_.append(rows.size(), bytes_of(rows, *header_));
+    if (order_.take(rows) < rows.size()) throw std::logic_error("ResultWriter: rows out of order");
+  }
+  /// Called after the last add().
+  void seal() { piece_.seal(); }
+
+ private:
+  friend class ResultWriter;
+
+  TablePiece piece_;
+  const ResultHeader* header_;
+  OrderOf<Rows> order_;
+};
+
+/// Writes the tables that docs/design/result-format.md lists and the header asks for to a file of
 /// its own, which the caller publishes. Its bytes depend on header and rows alone. Collisions come
 /// first, then clearances, then the profile, then near points, then unseen cubes, then
 /// swept cells. append() and write() throw std::logic_error for rows out of this order, for a table
-/// that the header does not ask for, for more rows than promised, for sources that do not ascend
-/// (except in the profile) and for columns of unequal lengths, where a column that the header does
-/// not ask for must be empty. A failing disk throws ResourceError.
+/// that the header does not ask for, for more rows than promised, for rows that do not ascend and
+/// for columns of unequal lengths, where a column that the header does not ask for must be empty. A
+/// failing disk throws ResourceError.
 ///
-/// Instead of appending rows, threads may encode them kEncodedRows at a time; only the last rows of
-/// a table may be fewer. The encoded rows are then hashed in order and written in order. One thread
-/// at a time may hash and one at a time may write; the two may differ.
+/// Instead of appending rows, threads may encode them kPieceRows at a time; only the last rows of a
+/// table may be fewer. The encoded rows are then written in order, by one thread at a time.
 ///
 /// `Rows` is Collisions, Clearances, ProfileRows, Nearby, UnseenCubes or SweptCells.
 class ResultWriter {
  public:
   /// Creates the file at `path`. collisions, clearances, near, unseen, swept: number of rows that
-  /// will be written.
-  /// The profile has one row per pose.
+  /// will be written. The profile has one row per pose.
   ResultWriter(const std::filesystem::path& path, const ResultHeader& header,
                std::uint64_t collisions, std::uint64_t clearances = 0, std::uint64_t near = 0,
                std::uint64_t unseen = 0, std::uint64_t swept = 0);
-  ~ResultWriter();
 
   /// Appends any number of rows.
   template <typename Rows>
-  void append(const Rows& rows);
+  void append(const Rows& rows) {
+    OrderOf<Rows> order;
+    const bool ascend = order.take(rows) == rows.size();
+    table<Rows>().append(rows.size(), bytes_of(rows, header_));
+    follow(order, ascend);
+  }
 
   /// Empty rows for the caller to fill and seal. Thread safe.
   template <typename Rows>
-  EncodedRows<Rows> new_rows() const;
+  EncodedRows<Rows> new_rows() const {
+    return {table<Rows>().new_piece(), header_};
+  }
   template <typename Rows>
-  void hash(const EncodedRows<Rows>& rows);
-  template <typename Rows>
-  void write(EncodedRows<Rows>& rows);
+  void write(EncodedRows<Rows>& rows) {
+    table<Rows>().write(rows.piece_);
+    follow(rows.order_, true);
+  }
 
   /// Writes the findings and closes the file. Throws std::logic_error unless as many rows as
   /// promised were appended.
   void finish(const ResultFindings& findings = {});
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  template <typename Rows>
+  struct Written {
+    TableWriter* table = nullptr;  ///< null where the result does not have it
+    OrderOf<Rows> order = {};
+  };
+
+  template <typename Rows>
+  void begin(std::uint64_t rows);
+
+  template <typename Rows>
+  TableWriter& table() const {
+    if (TableWriter* table = std::get<Written<Rows>>(tables_).table) return *table;
+    throw std::logic_error(std::string("ResultWriter: no ") + Table<Rows>::kGroup);
+  }
+
+  /// Throws std::logic_error unless rows with this order, which ascend, follow those before.
+  template <typename Rows>
+  void follow(const OrderOf<Rows>& order, bool ascend) {
+    OrderOf<Rows>& before = std::get<Written<Rows>>(tables_).order;
+    if (!ascend || !order.follows(before)) {
+      throw std::logic_error("ResultWriter: rows out of order");
+    }
+    before = order;
+  }
+
+  ResultHeader header_;
+  TableFileWriter file_;
+  std::tuple<Written<Collisions>, Written<Clearances>, Written<ProfileRows>, Written<Nearby>,
+             Written<UnseenCubes>, Written<SweptCells>>
+      tables_;
 };
 
 /// Whether ResultReader accepts a part of a result in place of a whole one.
 enum class Parts { kRefused, kAccepted };
 
-/// Reads a result. No value leaves it that was not checked against the hash of its column: whole
-/// tables and columns are checked before they are returned, and RowStream checks at its end. Throws
+/// Reads a result. No value leaves it that was not checked against the hash of its chunk. Throws
 /// InputError when the file is not a complete result, is damaged, or holds rows that no run can
 /// have found: source indices of points are strictly ascending and below
 /// header().environment_points, poses are below header().poses, bodies below their number, and
@@ -73,17 +156,16 @@ enum class Parts { kRefused, kAccepted };
 class ResultReader {
  public:
   explicit ResultReader(const std::filesystem::path& path, Parts parts = Parts::kRefused);
-  ~ResultReader();
-  ResultReader(ResultReader&&) noexcept;
-  ResultReader& operator=(ResultReader&&) noexcept;
 
-  const std::string& name() const;  ///< path of the file, for messages
-  const ResultHeader& header() const;
-  const ResultFindings& findings() const;
+  const std::string& name() const { return file_.name(); }  ///< path of the file, for messages
+  const ResultHeader& header() const { return header_; }
+  const ResultFindings& findings() const { return findings_; }
 
   /// Number of rows of a table; 0 where the result does not have it.
   template <typename Rows>
-  std::uint64_t rows() const;
+  std::uint64_t rows() const {
+    return table<Rows>().rows;
+  }
   std::uint64_t collisions() const { return rows<Collisions>(); }
   std::uint64_t clearances() const { return rows<Clearances>(); }
   std::uint64_t near() const { return rows<Nearby>(); }
@@ -91,27 +173,20 @@ class ResultReader {
   /// Hash of the question, the inputs and the answer. Results that differ in any of these have
   /// different ones, whatever engine and device searched.
   std::uint64_t identity() const;
-  /// The hash of the recorded hashes of a table's columns; 0 where the result does not have it.
+  /// Hash of a table's values; 0 where the result does not have it.
   template <typename Rows>
-  std::uint64_t recorded_hash() const;
+  std::uint64_t table_hash() const;
 
-  /// Reads `count` rows from row `first` on into `out`, and adds their values to `hashes`, which
-  /// the caller has to check after the last row. Columns that the result does not have become
-  /// empty. Uses many threads where `first` is a multiple of kEncodedRows and the number of rows is
-  /// one too, or reaches the end of the table.
+  /// Reads `count` rows from row `first` on into `out`, on the threads of the caller's arena.
+  /// Columns that the result does not have become empty. before: the order of the rows before them.
   template <typename Rows>
-  void read(std::uint64_t first, std::size_t count, Rows& out, RowHashes<Rows>& hashes) const;
-  /// Throws InputError unless these are the hashes of all rows of the table.
-  template <typename Rows>
-  void check_hashes(const RowHashes<Rows>& hashes) const;
+  void read(std::uint64_t first, std::size_t count, Rows& out, OrderOf<Rows> before = {}) const;
 
   /// Reads a whole table; without rows where the result does not have it.
   template <typename Rows>
   Rows all() const {
     Rows out;
-    RowHashes<Rows> hashes;
-    read(0, rows<Rows>(), out, hashes);
-    check_hashes<Rows>(hashes);
+    read(0, rows<Rows>(), out);
     return out;
   }
 
@@ -121,17 +196,39 @@ class ResultReader {
   std::vector<Value> column(std::vector<Value> Rows::*values) const;
 
  private:
-  struct State;
-  std::unique_ptr<State> state_;
+  template <typename Value>
+  using Stored = std::optional<StoredValues<Value>>;
+
+  template <typename Rows>
+  struct StoredTable {
+    PerColumn<Rows, Stored> columns = {};
+    std::uint64_t rows = 0;
+  };
+
+  template <typename Rows>
+  const StoredTable<Rows>& table() const {
+    return std::get<StoredTable<Rows>>(tables_);
+  }
+  template <typename Rows>
+  void open(StoredTable<Rows>& table) const;
+  template <typename Rows, typename Value>
+  void read_column(const Column<Rows, Value>& column, const StoredValues<Value>& stored,
+                   std::uint64_t first, std::vector<Value>& out) const;
+
+  TableFile file_;
+  ResultHeader header_;
+  ResultFindings findings_;
+  std::tuple<StoredTable<Collisions>, StoredTable<Clearances>, StoredTable<ProfileRows>,
+             StoredTable<Nearby>, StoredTable<UnseenCubes>, StoredTable<SweptCells>>
+      tables_;
 };
 
-/// Number of rows that a stream reads at a time by default, a multiple of kEncodedRows. Their
-/// chunks are enough work for the threads of one machine.
-inline constexpr std::size_t kBatchRows = 4 * kEncodedRows;
+/// Number of rows that a stream reads at a time by default. Their chunks are enough work for the
+/// threads of one machine.
+inline constexpr std::size_t kBatchRows = 4 * kPieceRows;
 
-/// Reads a table of a result front to back in constant memory, batch_rows at a time; a multiple of
-/// kEncodedRows is read by many threads, another number by one. A result without the table has no
-/// rows. The reader must outlive the stream.
+/// Reads a table of a result front to back in constant memory, batch_rows at a time. A result
+/// without the table has no rows. The reader must outlive the stream.
 template <typename Rows>
 class RowStream {
  public:
@@ -139,35 +236,20 @@ class RowStream {
       : reader_(&reader), batch_rows_(batch_rows) {}
 
   /// Fills `rows` with the next rows. Returns false, with no rows, at the end. Throws InputError as
-  /// ResultReader does, for rows out of order from one batch to the next, and at the end for rows
-  /// that do not have the recorded hash.
+  /// ResultReader does, and for rows out of order from one batch to the next.
   bool read(Rows& rows) {
-    const std::uint64_t first = next_;
-    const auto count = std::min<std::uint64_t>(batch_rows_, reader_->rows<Rows>() - first);
-    if (count == 0) {
-      clear_rows(rows);
-      reader_->check_hashes<Rows>(hashes_);
-      return false;
-    }
-    reader_->read(first, count, rows, hashes_);
-    const auto& order = rows.*Table<Rows>::kOrder;
-    if (last_ && !Table<Rows>::may_follow(*last_, order.front())) {
-      RowsRead{reader_->name(), reader_->header(), Table<Rows>::kGroup, first}.refuse_row(
-          Table<Rows>::kOrderDataset, 0, Table<Rows>::kExpectedOrder);
-    }
-    last_ = order.back();
+    const auto count = std::min<std::uint64_t>(batch_rows_, reader_->rows<Rows>() - next_);
+    reader_->read(next_, count, rows, order_);
+    order_.take(rows);
     next_ += count;
-    return true;
+    return count > 0;
   }
 
  private:
   const ResultReader* reader_;
   std::size_t batch_rows_;
   std::uint64_t next_ = 0;
-  std::optional<
-      typename std::decay_t<decltype(std::declval<Rows>().*Table<Rows>::kOrder)>::value_type>
-      last_;
-  RowHashes<Rows> hashes_;
+  OrderOf<Rows> order_;
 };
 
 /// Steps through the rows of a table that has sources. The reader must outlive the cursor. Throws

@@ -16,11 +16,13 @@
 #include "clearway/shard.hpp"
 #include "clearway/unsearched.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "io/files/hdf5.hpp"
+#include "io/files/json.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_dates.hpp"
 
 namespace clearway {
+
+class TableFile;
 
 /// What a result answers: it depends only on the source points, the model, the trajectory and the
 /// parameters (docs/design/result-format.md), so that `cmp` compares runs. Two results with equal
@@ -133,22 +135,10 @@ struct ResultFindings {
   std::vector<std::array<std::uint32_t, 2>> without_bodies = {};
 };
 
-/// Writes the attributes of a new result except its hashes and `complete`, and the lists of what it
-/// ignores.
-void write_result_header(const hdf5::Id& file, const ResultHeader& header);
+/// The facts of a result for the header of its file.
+Json result_facts(const ResultHeader& header, ResultFindings findings);
 
-/// Reads the header of a result or of a part. name: the file's, for messages. Throws InputError
-/// where the file is not a complete result, or is damaged.
-ResultHeader read_result_header(const hdf5::Id& file, const std::string& name);
-
-/// Writes the warnings as a group, and the other findings as attributes: those that a query with
-/// this header has.
-void write_result_findings(const hdf5::Id& file, const ResultFindings& findings,
-                           const ResultHeader& header);
-
-/// Reads the findings. header: the header of the same file. Throws InputError where an attribute is
-/// damaged, or the group of warnings is missing.
-ResultFindings read_result_findings(const hdf5::Id& file, const std::string& name,
-                                    const ResultHeader& header);
+/// Reads the facts of a result or of a part. Throws InputError for those that no run writes.
+void read_result_facts(const TableFile& file, ResultHeader& header, ResultFindings& findings);
 
 }  // namespace clearway

@@ -7,8 +7,6 @@
 namespace clearway {
 namespace {
 
-namespace names = result_names;
-
 bool is_finite(const Vec3& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
 }
@@ -31,10 +29,8 @@ void RowsRead::refuse_row(const char* dataset, std::size_t row, const std::strin
 void check_sources(const RowsRead& read, const char* dataset,
                    std::span<const std::uint64_t> source) {
   for (std::size_t i = 0; i < source.size(); ++i) {
-    if (source[i] < read.header.environment_points && (i == 0 || source[i] > source[i - 1])) {
-      continue;
-    }
-    read.refuse_row(dataset, i, "an index above the row before and below environment_points");
+    if (source[i] < read.header.environment_points) continue;
+    read.refuse_row(dataset, i, "an index below environment_points");
   }
 }
 
@@ -73,25 +69,23 @@ void check_clearances(const RowsRead& read, const char* dataset, std::span<const
 void check_chainages(const RowsRead& read, const char* dataset, std::span<const double> chainage) {
   for (std::size_t i = 0; i < chainage.size(); ++i) {
     if (read.first == 0 && i == 0 && chainage[i] != 0) read.refuse_row(dataset, i, "0");
-    if (!(chainage[i] >= (i > 0 ? chainage[i - 1] : 0))) {
-      read.refuse_row(dataset, i, "metres, not below the row before");
-    }
+    if (!(chainage[i] >= 0)) read.refuse_row(dataset, i, "metres, 0 or above");
   }
 }
 
 void Table<Collisions>::check(const RowsRead& read, const Collisions& rows) {
   for (std::size_t i = 0; i < rows.last_pose.size(); ++i) {
     if (rows.last_pose[i] >= rows.first_pose[i]) continue;
-    read.refuse_row(names::kLastPose, i, "a pose that is not before the first one");
+    read.refuse_row("last_pose", i, "a pose that is not before the first one");
   }
   for (std::size_t i = 0; i < rows.depth.size(); ++i) {
     const bool is_free = rows.depth_source[i] != Collisions::kNoPoint;
     if (is_free && rows.depth_source[i] >= read.header.environment_points) {
-      read.refuse_row(names::kDepthSource, i,
+      read.refuse_row("depth_source", i,
                       "an index below environment_points, or 2^64 - 1 for none");
     }
     if (is_free ? !(rows.depth[i] >= 0) : !std::isnan(rows.depth[i])) {
-      read.refuse_row(names::kDepth, i,
+      read.refuse_row("depth", i,
                       is_free ? "a distance, 0 or more"
                               : "no number (NaN), as no point of the environment is free");
     }
@@ -102,21 +96,21 @@ void Table<ProfileRows>::check(const RowsRead& read, const ProfileRows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (rows.source[i] == Profile::kNoPoint) {
       if (!(std::isinf(rows.distance[i]) && rows.distance[i] > 0)) {
-        read.refuse_row(names::kDistance, i, "infinity, as the pose has no point");
+        read.refuse_row("distance", i, "infinity, as the pose has no point");
       }
       if (!is_absent(rows.xyz[i])) {
-        read.refuse_row(names::kXyz, i, "no numbers (NaN), as the pose has no point");
+        read.refuse_row("xyz", i, "no numbers (NaN), as the pose has no point");
       }
       continue;
     }
     if (rows.source[i] >= read.header.environment_points) {
-      read.refuse_row(names::kSource, i, "an index below environment_points, or 2^64 - 1 for none");
+      read.refuse_row("source", i, "an index below environment_points, or 2^64 - 1 for none");
     }
     // The root of a number below fl(D D) may round to D, so D itself is valid.
     if (!(is_distance(read.header, rows.distance[i]) && rows.distance[i] <= read.header.profile)) {
-      read.refuse_row(names::kDistance, i, "a distance from 0 to the profile's");
+      read.refuse_row("distance", i, "a distance from 0 to the profile's");
     }
-    if (!is_finite(rows.xyz[i])) read.refuse_row(names::kXyz, i, "finite coordinates");
+    if (!is_finite(rows.xyz[i])) read.refuse_row("xyz", i, "finite coordinates");
   }
 }
 
@@ -145,22 +139,6 @@ void check_cells(const RowsRead& read, const char* dataset,
 void check_parts(const RowsRead& read, const char* dataset, std::span<const std::uint64_t> values) {
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (values[i] == 0) read.refuse_row(dataset, i, "1 part of a cube or more");
-  }
-}
-
-void Table<SweptCells>::check(const RowsRead& read, const Rows& rows) {
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (!may_follow(rows.cell[i - 1], rows.cell[i])) {
-      read.refuse_row(kOrderDataset, i, kExpectedOrder);
-    }
-  }
-}
-
-void Table<UnseenCubes>::check(const RowsRead& read, const Rows& rows) {
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (!may_follow(rows.cube[i - 1], rows.cube[i])) {
-      read.refuse_row(kOrderDataset, i, kExpectedOrder);
-    }
   }
 }
 

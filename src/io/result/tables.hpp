@@ -2,18 +2,18 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "clearway/result.hpp"
 #include "clearway/vec3.hpp"
 #include "core/seen/cross_sections.hpp"
-#include "io/files/xxh64.hpp"
 #include "io/result/result_header.hpp"
-#include "io/result/result_names.hpp"
 
 /// The schema of a result's tables: for each table its columns, in the order of the file, with the
 /// results that have them and what their values must be. Writer, reader, streams, merge, verify,
@@ -48,7 +48,8 @@ struct Column {
   /// The values, one for each row; no values where the result does not have the column.
   std::vector<T> Rows::*values;
   bool (*is_in)(const ResultHeader& header);  ///< whether a result has the column
-  /// Throws InputError for a value that no run can have written. Thread safe.
+  /// Throws InputError for a value that no run can have written, whatever stands in other rows.
+  /// Thread safe.
   void (*check)(const RowsRead& read, const char* dataset, std::span<const T> values);
   /// Describes the column in exported files, in up to 31 characters. Null for a column that is not
   /// exported as a field of its own.
@@ -86,7 +87,7 @@ inline bool has_classes(const ResultHeader& header) { return header.has_classes(
 template <typename Rows>
 struct AscendingSources {
   static constexpr auto kOrder = &Rows::source;
-  static constexpr const char* kOrderDataset = result_names::kSource;
+  static constexpr const char* kOrderDataset = "source";
   static bool may_follow(std::uint64_t before, std::uint64_t after) { return after > before; }
   static constexpr const char* kExpectedOrder = "an index above the row before";
 };
@@ -98,32 +99,31 @@ struct Table;
 template <>
 struct Table<Collisions> : AscendingSources<Collisions> {
   using Rows = Collisions;
-  static constexpr const char* kGroup = result_names::kGroup;
-  static constexpr const char* kHash = result_names::kCollisionsHash;
+  static constexpr const char* kGroup = "collisions";
   static bool is_in(const ResultHeader&) { return true; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
                                   check_sources},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
-      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose,
+      Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
+      Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses,
                                   "first pose that touches"},
-      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+      Column<Rows, std::uint32_t>{"body", &Rows::body,
                                   [](const ResultHeader& h) { return h.has_first_bodies(); },
                                   check_bodies, "body of that pose"},
-      Column<Rows, std::uint32_t>{result_names::kLastPose, &Rows::last_pose,
+      Column<Rows, std::uint32_t>{"last_pose", &Rows::last_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses},
-      Column<Rows, std::uint8_t>{result_names::kCertain, &Rows::certain,
+      Column<Rows, std::uint8_t>{"certain", &Rows::certain,
                                  [](const ResultHeader& h) { return h.budget.has_value(); },
                                  check_flags},
-      Column<Rows, double>{result_names::kDepth, &Rows::depth,
+      Column<Rows, double>{"depth", &Rows::depth,
                            [](const ResultHeader& h) { return h.depth; }, check_with_rows<double>,
                            "distance to nearest free point"},
-      Column<Rows, std::uint64_t>{result_names::kDepthSource, &Rows::depth_source,
+      Column<Rows, std::uint64_t>{"depth_source", &Rows::depth_source,
                                   [](const ResultHeader& h) { return h.depth; },
                                   check_with_rows<std::uint64_t>, "index of that free point"},
-      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+      Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>, "class of the point"}};
 
   /// Throws InputError where the columns of a row contradict each other.
@@ -133,21 +133,20 @@ struct Table<Collisions> : AscendingSources<Collisions> {
 template <>
 struct Table<Nearby> : AscendingSources<Nearby> {
   using Rows = Nearby;
-  static constexpr const char* kGroup = result_names::kNearGroup;
-  static constexpr const char* kHash = result_names::kNearHash;
+  static constexpr const char* kGroup = "near";
   static bool is_in(const ResultHeader& header) { return header.budget.has_value(); }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
                                   check_sources},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
-      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose,
+      Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
+      Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses,
                                   "first pose that is near"},
-      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+      Column<Rows, std::uint32_t>{"body", &Rows::body,
                                   [](const ResultHeader& h) { return h.has_first_bodies(); },
                                   check_bodies, "body of that pose"},
-      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+      Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>, "class of the point"}};
 
   static void check(const RowsRead&, const Rows&) {}
@@ -156,22 +155,21 @@ struct Table<Nearby> : AscendingSources<Nearby> {
 template <>
 struct Table<Clearances> : AscendingSources<Clearances> {
   using Rows = Clearances;
-  static constexpr const char* kGroup = result_names::kClearanceGroup;
-  static constexpr const char* kHash = result_names::kClearanceHash;
+  static constexpr const char* kGroup = "clearance";
   static bool is_in(const ResultHeader& header) { return header.clearance > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
                                   check_sources},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_points},
-      Column<Rows, double>{result_names::kDistance, &Rows::distance, in_every_result,
+      Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
+      Column<Rows, double>{"distance", &Rows::distance, in_every_result,
                            check_clearances, "least distance to the model"},
-      Column<Rows, std::uint32_t>{result_names::kPose, &Rows::pose, in_every_result, check_poses,
+      Column<Rows, std::uint32_t>{"pose", &Rows::pose, in_every_result, check_poses,
                                   "pose that has the distance"},
-      Column<Rows, std::uint32_t>{result_names::kBody, &Rows::body,
+      Column<Rows, std::uint32_t>{"body", &Rows::body,
                                   [](const ResultHeader& h) { return !h.bodies.empty(); },
                                   check_bodies, "body of that pose"},
-      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+      Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>, "class of the point"}};
 
   static void check(const RowsRead&, const Rows&) {}
@@ -180,27 +178,26 @@ struct Table<Clearances> : AscendingSources<Clearances> {
 template <>
 struct Table<ProfileRows> {
   using Rows = ProfileRows;
-  static constexpr const char* kGroup = result_names::kProfileGroup;
-  static constexpr const char* kHash = result_names::kProfileHash;
+  static constexpr const char* kGroup = "profile";
   static bool is_in(const ResultHeader& header) { return header.profile > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, double>{result_names::kDistance, &Rows::distance, in_every_result,
+      Column<Rows, double>{"distance", &Rows::distance, in_every_result,
                            check_with_rows<double>},
-      Column<Rows, std::uint64_t>{result_names::kSource, &Rows::source, in_every_result,
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
                                   check_with_rows<std::uint64_t>},
-      Column<Rows, Vec3>{result_names::kXyz, &Rows::xyz, in_every_result, check_with_rows<Vec3>},
-      Column<Rows, double>{result_names::kChainage, &Rows::chainage, in_every_result,
+      Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_with_rows<Vec3>},
+      Column<Rows, double>{"chainage", &Rows::chainage, in_every_result,
                            check_chainages},
-      Column<Rows, double>{result_names::kSquared, &Rows::squared,
+      Column<Rows, double>{"squared", &Rows::squared,
                            [](const ResultHeader& h) { return h.part.has_value(); },
                            check_with_rows<double>},
-      Column<Rows, std::uint8_t>{result_names::kClass, &Rows::point_class, has_classes,
+      Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>}};
 
   // The order, as in AscendingSources, but several poses may be at the same place.
   static constexpr auto kOrder = &Rows::chainage;
-  static constexpr const char* kOrderDataset = result_names::kChainage;
+  static constexpr const char* kOrderDataset = "chainage";
   static bool may_follow(double before, double after) { return after >= before; }
   static constexpr const char* kExpectedOrder = "metres, not below the row before";
 
@@ -212,55 +209,51 @@ struct Table<ProfileRows> {
 template <>
 struct Table<UnseenCubes> {
   using Rows = UnseenCubes;
-  static constexpr const char* kGroup = result_names::kUnseenGroup;
-  static constexpr const char* kHash = result_names::kUnseenHash;
+  static constexpr const char* kGroup = "unseen";
   static bool is_in(const ResultHeader& header) { return header.seen; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::array<std::int32_t, 3>>{result_names::kCube, &Rows::cube, in_every_result,
+      Column<Rows, std::array<std::int32_t, 3>>{"cube", &Rows::cube, in_every_result,
                                                 check_with_rows<std::array<std::int32_t, 3>>},
-      Column<Rows, std::uint32_t>{result_names::kFirstPose, &Rows::first_pose, in_every_result,
+      Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose, in_every_result,
                                   check_poses},
-      Column<Rows, std::uint32_t>{result_names::kGroupOfCube, &Rows::group, in_every_result,
+      Column<Rows, std::uint32_t>{"group", &Rows::group, in_every_result,
                                   check_groups},
-      Column<Rows, double>{result_names::kChainage, &Rows::chainage,
+      Column<Rows, double>{"chainage", &Rows::chainage,
                            [](const ResultHeader& h) { return h.part.has_value(); }, check_steps},
-      Column<Rows, double>{result_names::kStep, &Rows::step,
+      Column<Rows, double>{"step", &Rows::step,
                            [](const ResultHeader& h) { return h.part.has_value(); }, check_steps}};
 
   static constexpr auto kOrder = &Rows::cube;
-  static constexpr const char* kOrderDataset = result_names::kCube;
+  static constexpr const char* kOrderDataset = "cube";
   static bool may_follow(const std::array<std::int32_t, 3>& before,
                          const std::array<std::int32_t, 3>& after) {
     return before < after;
   }
   static constexpr const char* kExpectedOrder = "a cube after the one of the row before";
-  /// Throws InputError for cubes that do not ascend.
-  static void check(const RowsRead& read, const Rows& rows);
+  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <>
 struct Table<SweptCells> {
   using Rows = SweptCells;
-  static constexpr const char* kGroup = result_names::kSweptGroup;
-  static constexpr const char* kHash = result_names::kSweptHash;
+  static constexpr const char* kGroup = "swept";
   static bool is_in(const ResultHeader& header) { return header.seen; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::array<std::int32_t, 3>>{result_names::kCell, &Rows::cell, in_every_result,
+      Column<Rows, std::array<std::int32_t, 3>>{"cell", &Rows::cell, in_every_result,
                                                 check_cells},
-      Column<Rows, std::uint64_t>{result_names::kParts, &Rows::parts, in_every_result,
+      Column<Rows, std::uint64_t>{"parts", &Rows::parts, in_every_result,
                                   check_parts}};
 
   static constexpr auto kOrder = &Rows::cell;
-  static constexpr const char* kOrderDataset = result_names::kCell;
+  static constexpr const char* kOrderDataset = "cell";
   static bool may_follow(const std::array<std::int32_t, 3>& before,
                          const std::array<std::int32_t, 3>& after) {
     return before < after;
   }
   static constexpr const char* kExpectedOrder = "a cell after the one of the row before";
-  /// Throws InputError for cells that do not ascend.
-  static void check(const RowsRead& read, const Rows& rows);
+  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <typename Rows>
@@ -290,9 +283,37 @@ using PerColumn = decltype(std::apply(
     },
     Table<Rows>::kColumns));
 
-/// Hashes of the values of each column, in the order of the rows.
+/// Follows the order of the rows of a table that come in pieces.
 template <typename Rows>
-using RowHashes = std::array<Xxh64Stream, kColumnsOf<Rows>>;
+class OrderOf {
+ public:
+  /// Index of the first of these rows, which follow those before, that is out of order; their
+  /// number where none is.
+  std::size_t take(const Rows& rows) {
+    const auto& values = rows.*Table<Rows>::kOrder;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (last_ && !Table<Rows>::may_follow(*last_, values[i])) return i;
+      if (!first_) first_ = values[i];
+      last_ = values[i];
+    }
+    return values.size();
+  }
+  /// Whether these rows may stand after others.
+  bool follows(const OrderOf& before) const {
+    return !first_ || !before.last_ || Table<Rows>::may_follow(*before.last_, *first_);
+  }
+  /// Throws InputError for rows out of order.
+  void check(const RowsRead& read, const Rows& rows) {
+    const std::size_t row = take(rows);
+    if (row == (rows.*Table<Rows>::kOrder).size()) return;
+    read.refuse_row(Table<Rows>::kOrderDataset, row, Table<Rows>::kExpectedOrder);
+  }
+
+ private:
+  std::optional<
+      typename std::decay_t<decltype(std::declval<Rows>().*Table<Rows>::kOrder)>::value_type>
+      first_, last_;
+};
 
 /// Removes all rows and keeps the memory.
 template <typename Rows>

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "io/files/header_values.hpp"
 #include "io/files/input_error.hpp"
 
 namespace clearway {
@@ -10,19 +11,31 @@ namespace {
 constexpr const char* kFirstDate = "first_date";
 constexpr const char* kLastDate = "last_date";
 
-std::string read_date(const hdf5::Id& file, const char* attribute, const std::string& name) {
+bool is_day(const std::string& day) {
   constexpr std::string_view kForm = "0000-00-00";
-  std::string date = hdf5::read_text_attribute(file, attribute, name);
-  bool good = date.size() == kForm.size();
+  bool good = day.size() == kForm.size();
   for (std::size_t i = 0; good && i < kForm.size(); ++i) {
-    const bool is_digit = date[i] >= '0' && date[i] <= '9';
-    good = kForm[i] == '0' ? is_digit : date[i] == kForm[i];
+    const bool is_digit = day[i] >= '0' && day[i] <= '9';
+    good = kForm[i] == '0' ? is_digit : day[i] == kForm[i];
   }
-  if (good) return date;
+  return good;
+}
+
+std::string read_date(const hdf5::Id& file, const char* attribute, const std::string& name) {
+  std::string date = hdf5::read_text_attribute(file, attribute, name);
+  if (is_day(date)) return date;
   refuse(name, "attribute '" + std::string(attribute) + "': expected a day such as 2024-05-31");
 }
 
 }  // namespace
+
+void keep_facts(HeaderValues& values, ScanDates& dates) {
+  values.add("first", dates.first);
+  values.add("last", dates.last);
+  if (!is_day(dates.first) || !is_day(dates.last)) {
+    values.refuse_fact("first", "days such as 2024-05-31");
+  }
+}
 
 void write_scan_dates(const hdf5::Id& file, const ScanDates& dates) {
   if (!dates.known()) return;

@@ -7,6 +7,8 @@
 
 namespace clearway {
 
+class HeaderValues;
+
 /// The days on which scans were made, as far as their files say, in the form "2024-05-31", whose
 /// order is that of the days. Both are empty where no file says.
 struct ScanDates {
@@ -21,6 +23,9 @@ struct ScanDates {
   }
   friend bool operator==(const ScanDates&, const ScanDates&) = default;
 };
+
+/// What the header of a file keeps. Throws InputError for what is no day.
+void keep_facts(HeaderValues& values, ScanDates& dates);
 
 /// Writes the dates as attributes of a store or a result; none where no file says.
 void write_scan_dates(const hdf5::Id& file, const ScanDates& dates);

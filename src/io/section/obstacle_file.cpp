@@ -16,8 +16,8 @@ std::vector<NamedObstacle> read_obstacles(const std::filesystem::path& path) {
   TextTable table(InputBuffer::open_regular(path), ',');
   if (!table.next()) refuse(table.name(), std::string("is empty") + kExpected);
   table.take_header();
-  const TableColumn id = table.needed("id", kExpected);
-  std::array<TableColumn, 6> corners;
+  const TextColumn id = table.needed("id", kExpected);
+  std::array<TextColumn, 6> corners;
   for (std::size_t i = 0; i < 6; ++i) corners[i] = table.needed(kCorners[i], kExpected);
   const auto name = table.column("name");
   std::vector<NamedObstacle> out;

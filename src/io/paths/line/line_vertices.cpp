@@ -72,7 +72,7 @@ class LineTable {
  private:
   /// A column, and the list that its numbers go to.
   struct Column {
-    TableColumn of;
+    TextColumn of;
     std::vector<double> LineVertices::*list;
   };
 

@@ -68,7 +68,7 @@ std::uint64_t question_hash(const ResultReader& result) {
   const ResultHeader& header = result.header();
   std::string text = hash_text(header.environment_hash) + hash_text(header.model_hash) +
                      hash_text(header.trajectory_hash) +
-                     hash_text(result.recorded_hash<Collisions>()) + json_number(header.radius) +
+                     hash_text(result.table_hash<Collisions>()) + json_number(header.radius) +
                      (header.between_poses ? " between" : " at") +
                      (header.ignores_points() ? ignored_text(header) : std::string()) +
                      (header.budget ? json_number(header.budget->clear()) : std::string());

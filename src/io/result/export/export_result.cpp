@@ -227,7 +227,7 @@ class CsvSink final : public RowSink<Rows> {
     out << "source";
     for_each_column<Rows>([&](const auto& column) {
       if (!column.is_in(header_)) return;
-      if (std::string_view(column.dataset) == result_names::kXyz) {
+      if (std::string_view(column.dataset) == "xyz") {
         out << "," << position_columns(header_, ",");
       }
       if (column.field != nullptr) out << "," << column.dataset;

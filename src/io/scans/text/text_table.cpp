@@ -317,9 +317,9 @@ bool TextTable::is_header(ColumnNames names) {
          std::ranges::all_of(header_.units, &std::string::empty);
 }
 
-std::optional<TableColumn> TextTable::find(std::span<const std::string> columns,
-                                           ColumnNames names) const {
-  std::optional<TableColumn> found;
+std::optional<TextColumn> TextTable::find(std::span<const std::string> columns,
+                                          ColumnNames names) const {
+  std::optional<TextColumn> found;
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (!is_one_of(columns[i], names)) continue;
     if (found) refuse_here("the header names two columns for " + found->name + "; expected one");
@@ -328,7 +328,7 @@ std::optional<TableColumn> TextTable::find(std::span<const std::string> columns,
   return found;
 }
 
-std::optional<TableColumn> TextTable::column(ColumnNames names, const ColumnUnit& unit) const {
+std::optional<TextColumn> TextTable::column(ColumnNames names, const ColumnUnit& unit) const {
   auto found = find(header_.names, names);
   if (!found) return found;
   double metres = unit.unless_named;
@@ -345,7 +345,7 @@ std::optional<TableColumn> TextTable::column(ColumnNames names, const ColumnUnit
   return found;
 }
 
-std::optional<TableColumn> TextTable::column(std::string_view name) const {
+std::optional<TextColumn> TextTable::column(std::string_view name) const {
   auto found = find(header_.written, {&name, 1});
   if (found && found->has_unit) {
     refuse_here("the header has the " + found->name + " in " +
@@ -354,7 +354,7 @@ std::optional<TableColumn> TextTable::column(std::string_view name) const {
   return found;
 }
 
-TableColumn TextTable::needed(std::string_view name, const char* otherwise) const {
+TextColumn TextTable::needed(std::string_view name, const char* otherwise) const {
   const auto found = column(name);
   if (!found) refuse_here("has no column " + std::string(name) + otherwise);
   return *found;
@@ -368,7 +368,7 @@ void TextTable::take_row(std::size_t most, const char* rows) {
   }
 }
 
-std::string TextTable::text(const TableColumn& column) const {
+std::string TextTable::text(const TextColumn& column) const {
   const std::string_view field = trimmed(fields_[column.index], " \t");
   if (field.starts_with('"') && (field.size() < 2 || !field.ends_with('"'))) {
     refuse_here(excerpt(field) + ": a quote has no end");
@@ -376,7 +376,7 @@ std::string TextTable::text(const TableColumn& column) const {
   return unquoted(field);
 }
 
-double TextTable::number(const TableColumn& column) const {
+double TextTable::number(const TextColumn& column) const {
   const std::string_view field = fields_[column.index];
   const auto value = parse_whole_number(field);
   if (!value || !std::isfinite(*value)) {

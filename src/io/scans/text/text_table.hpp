@@ -93,7 +93,7 @@ std::string other_table(const TableHeader& header);
 std::string take_units(const TableHeader& header, const CoordinateColumns& columns, StatedCrs& out);
 
 /// A column of a table, and how its numbers are converted.
-struct TableColumn {
+struct TextColumn {
   std::string name;       ///< as messages call it
   std::size_t index = 0;  ///< from 0
   bool has_unit = false;  ///< whether the header names its unit
@@ -138,24 +138,24 @@ class TextTable {
   bool is_header(ColumnNames names);
   /// The column that has one of the names, of which the first is for messages; nullopt where none
   /// has. Throws where two have, and for a unit that is none of length.
-  std::optional<TableColumn> column(ColumnNames names, const ColumnUnit& unit) const;
-  std::optional<TableColumn> column(std::string_view name, const ColumnUnit& unit) const {
+  std::optional<TextColumn> column(ColumnNames names, const ColumnUnit& unit) const;
+  std::optional<TextColumn> column(std::string_view name, const ColumnUnit& unit) const {
     return column(ColumnNames(&name, 1), unit);
   }
   /// The column of this name, which has no unit; `otherwise` says what is expected without it.
-  TableColumn needed(std::string_view name, const char* otherwise) const;
-  std::optional<TableColumn> column(std::string_view name) const;
+  TextColumn needed(std::string_view name, const char* otherwise) const;
+  std::optional<TextColumn> column(std::string_view name) const;
 
   /// Reads the line as a row. most: number of rows that are allowed. rows: what they are, for the
   /// message.
   void take_row(std::size_t most, const char* rows);
   /// The number in a field of the row, which must be finite, as it is wanted.
-  double number(const TableColumn& column) const;
+  double number(const TextColumn& column) const;
   /// What a field of the row says, see unquoted().
-  std::string text(const TableColumn& column) const;
+  std::string text(const TextColumn& column) const;
 
  private:
-  std::optional<TableColumn> find(std::span<const std::string> columns, ColumnNames names) const;
+  std::optional<TextColumn> find(std::span<const std::string> columns, ColumnNames names) const;
 
   InputBuffer input_;
   char separator_;

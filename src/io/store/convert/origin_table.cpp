@@ -303,7 +303,7 @@ void for_each_origin(const std::filesystem::path& path, Use use) {
   if (!table.is_header(kColumns)) {
     table.refuse_here(excerpt(table.line()) + "; expected the header first,x,y,z");
   }
-  std::array<TableColumn, 4> columns;
+  std::array<TextColumn, 4> columns;
   for (std::size_t i = 0; i < 4; ++i) columns[i] = *table.column(kColumns[i]);
   std::optional<std::uint64_t> before;
   while (table.next()) {
