@@ -239,7 +239,7 @@ auto classes_of(const StoreReader& store, std::uint32_t cell) {
   return [classes](std::uint32_t i) { return classes ? (*classes)[i] : std::uint8_t{0}; };
 }
 
-/// Memory for chunks that the file's writer holds back, and for what the profile is written from.
+/// Memory for rows that the file's writer buffers, and for what the profile is written from.
 constexpr std::uint64_t kWriterBytes = std::uint64_t{12} << 20;
 
 /// Bytes that a piece of kPieceRows encoded rows takes in memory.

@@ -48,27 +48,23 @@ class HeaderValues {
   /// A fact that is absent where it is not known.
   template <typename Value>
   void add(const char* key, std::optional<Value>& value) {
-    add_if(value.has_value(), key, value);
+    if (reads() ? !has(key) : !value.has_value()) return;
+    if (reads()) value.emplace();
+    add(key, *value);
   }
 
-  /// A list, or an object, that is absent unless `is_kept`; reading then leaves it as it is.
+  /// A fact that is absent unless `is_kept`; reading then leaves it as it is.
   template <typename Value>
   void add_if(bool is_kept, const char* key, Value& value) {
-    if (reads() ? !has(key) : !is_kept) return;
-    if constexpr (requires { value.emplace(); value.reset(); }) {
-      if (reads()) value.emplace();
-      add(key, *value);
-    } else {
-      add(key, value);
-    }
+    if (reads() ? has(key) : is_kept) add(key, value);
   }
 
   /// The fields of a struct, of which some are absent where they have their default.
   template <typename Struct, typename... Fields>
   void add_fields(const std::tuple<Fields...>& fields, Struct& owner) {
     for_each_field(fields, [&](const auto& field) {
-      if constexpr (requires { field.is_default(owner); }) {
-        add_if(!field.is_kept_if_set || !field.is_default(owner), field.key, field.of(owner));
+      if (field.is_kept_if_set) {
+        add_if(!field.is_default(owner), field.key, field.of(owner));
       } else {
         add(field.key, field.of(owner));
       }

@@ -264,17 +264,27 @@ TablePiece TableWriter::new_piece() const {
 }
 
 void TableWriter::write(TablePiece& piece) {
+  begin_rows(piece.size());
   hdf5::naming(file_.state_->name, [&] { write_piece(piece); });
+}
+
+void TableWriter::begin_rows(std::size_t rows) {
+  TableFileWriter::State& state = *file_.state_;
+  hdf5::naming(state.name, [&] {
+    while (state.complete < state.tables.size() && &state.tables[state.complete] != this) {
+      state.tables[state.complete].complete();
+    }
+  });
+  if (state.complete == state.tables.size() || rows > promised_ - written_ - buffered_.size()) {
+    throw std::logic_error("/" + group_ + ": rows out of order, or too many of them");
+  }
 }
 
 void TableWriter::write_piece(TablePiece& piece) {
   TableFileWriter::State& state = *file_.state_;
-  while (state.complete < state.tables.size() && &state.tables[state.complete] != this) {
-    state.tables[state.complete].complete();
+  if (piece.size() < kPieceRows && written_ + piece.size() < promised_) {
+    throw std::logic_error("/" + group_ + ": rows in pieces of another length");
   }
-  const bool fits = state.complete < state.tables.size() && piece.size() <= promised_ - written_ &&
-                    (piece.size() == kPieceRows || written_ + piece.size() == promised_);
-  if (!fits) throw std::logic_error("/" + group_ + ": rows out of order, or too many of them");
   written_ += piece.size();
   for (std::size_t i = 0; i < datasets_.size(); ++i) {
     Dataset& dataset = datasets_[i];
@@ -292,6 +302,7 @@ void TableWriter::write_piece(TablePiece& piece) {
 }
 
 void TableWriter::append(std::size_t rows, std::span<const ColumnBytes> columns) {
+  begin_rows(rows);
   std::vector<ColumnBytes> part(columns.begin(), columns.end());
   for (std::size_t first = 0; first < rows;) {
     const std::size_t count = std::min(rows - first, kPieceRows - buffered_.size());
@@ -305,9 +316,9 @@ void TableWriter::append(std::size_t rows, std::span<const ColumnBytes> columns)
     buffered_.append(count, part);
     first += count;
     if (buffered_.size() < kPieceRows && written_ + buffered_.size() < promised_) continue;
-    buffered_.seal();
-    write(buffered_);
-    buffered_ = new_piece();
+    TablePiece piece = std::exchange(buffered_, new_piece());
+    piece.seal();
+    write(piece);
   }
 }
 
@@ -423,11 +434,11 @@ struct TableFile::State {
 
   void read_chunk_hashes() {
     hashes = read_whole<std::uint64_t>(file, kChunkHashes, bytes->size_bytes(), name);
+    const Json listed = header.value(kColumns, Json());
+    bool sound = listed.is_object() &&
+                 header.value(kChunkHashes, Json()) == xxh64(std::as_bytes(std::span(hashes)));
     std::uint64_t chunks = 0;
-    bool sound = header.contains(kColumns) && header[kColumns].is_object() &&
-                 header.contains(kChunkHashes) &&
-                 header[kChunkHashes] == xxh64(std::as_bytes(std::span(hashes)));
-    for (const auto& [path, column] : sound ? header[kColumns].items() : Json::object().items()) {
+    for (const auto& [path, column] : listed.items()) {
       sound = sound && column.is_array() && column.size() == 2 && column[0].is_number_unsigned() &&
               column[1].is_number_unsigned() &&
               column[1].get<std::uint64_t>() <= hashes.size() - chunks;

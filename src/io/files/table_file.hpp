@@ -136,8 +136,10 @@ class TableWriter {
   friend class TableFileWriter;
   struct Dataset;
 
-  void complete();
+  /// Completes the tables before this one. Throws std::logic_error where rows are out of order.
+  void begin_rows(std::size_t rows);
   void write_piece(TablePiece& piece);
+  void complete();
 
   TableFileWriter& file_;
   std::string group_;

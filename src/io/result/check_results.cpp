@@ -40,7 +40,7 @@ void check_table(const ResultReader& result, Progress& progress) {
 
 /// Reads a table that has no points, which checks its values and hashes.
 template <typename Rows>
-void check_hashes_of(const ResultReader& result, Progress& progress) {
+void check_rows(const ResultReader& result, Progress& progress) {
   RowStream<Rows> stream(result);
   for (Rows rows; stream.read(rows);) progress.advance(rows.size());
 }
@@ -58,8 +58,8 @@ std::optional<std::string> verify_result(const ResultReader& result, Progress& p
     check_table<Clearances>(result, progress);
     check_table<ProfileRows>(result, progress);
     check_table<Nearby>(result, progress);
-    check_hashes_of<UnseenCubes>(result, progress);
-    check_hashes_of<SweptCells>(result, progress);
+    check_rows<UnseenCubes>(result, progress);
+    check_rows<SweptCells>(result, progress);
   } catch (const InputError& error) {
     fault = error.what();
   }

@@ -178,13 +178,10 @@ Answer PartSet::answer() const {
 
 namespace {
 
-/// Bytes of the program and of what the writer holds back.
+/// Bytes of the program, of the rows that the writer buffers, and of chunks that threads check.
 constexpr std::uint64_t kFixedBytes = std::uint64_t{32} << 20;
 /// Bytes of an open file: its metadata in HDF5.
 constexpr std::uint64_t kFileBytes = std::uint64_t{512} << 10;
-/// Most bytes of a dataset's chunks that HDF5 caches.
-constexpr std::uint64_t kCacheBytes = std::uint64_t{1} << 20;
-
 constexpr std::size_t kLeastRows = 1 << 10;
 
 /// Bytes of the values of a row, with all columns.
@@ -196,27 +193,13 @@ std::uint64_t row_bytes() {
   return bytes;
 }
 
-/// Most bytes of chunks that HDF5 caches for a table.
-template <typename Rows>
-std::uint64_t cached_bytes(const ResultReader& part) {
-  std::uint64_t bytes = 0;
-  for_each_column<Rows>([&](const auto& column) {
-    if (!column.is_in(part.header())) return;
-    using Value = typename std::decay_t<decltype(column)>::Value;
-    bytes += std::min(kCacheBytes, part.rows<Rows>() * sizeof(Value));
-  });
-  return bytes;
-}
-
 std::uint64_t needed_bytes(const PartSet& set, std::size_t batch_rows) {
   std::uint64_t bytes = kFixedBytes + 4 * batch_rows * row_bytes<ProfileRows>();
   const std::uint64_t point_bytes = std::max(row_bytes<Collisions>(), row_bytes<Clearances>());
   std::uint64_t space_bytes = 0;
   for (const ResultReader& part : set.parts()) {
     const std::uint64_t rows = std::max({part.collisions(), part.clearances(), part.near()});
-    bytes += kFileBytes + cached_bytes<Collisions>(part) + cached_bytes<Clearances>(part) +
-             cached_bytes<ProfileRows>(part) + cached_bytes<Nearby>(part) +
-             std::min<std::uint64_t>(batch_rows, rows) * point_bytes;
+    bytes += kFileBytes + std::min<std::uint64_t>(batch_rows, rows) * point_bytes;
     space_bytes = std::max(space_bytes, part.rows<UnseenCubes>() * row_bytes<UnseenCubes>() +
                                             part.rows<SweptCells>() * row_bytes<SweptCells>());
   }
@@ -336,11 +319,6 @@ class PartMerge {
       writer_.append(best);
       summarise(best, summary_, first);
       throw_if_stopped(progress_);
-    }
-    // Reads the other streams to their ends, where their hashes are checked.
-    for (std::size_t part = 1; part < streams.size(); ++part) {
-      ProfileRows none;
-      streams[part].read(none);
     }
   }
 

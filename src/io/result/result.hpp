@@ -90,9 +90,9 @@ class ResultWriter {
   template <typename Rows>
   void append(const Rows& rows) {
     OrderOf<Rows> order;
-    const bool ascend = order.take(rows) == rows.size();
+    check_follows(order.take(rows) == rows.size(), order);
     table<Rows>().append(rows.size(), bytes_of(rows, header_));
-    follow(order, ascend);
+    std::get<Written<Rows>>(tables_).order = order;
   }
 
   /// Empty rows for the caller to fill and seal. Thread safe.
@@ -102,8 +102,9 @@ class ResultWriter {
   }
   template <typename Rows>
   void write(EncodedRows<Rows>& rows) {
+    check_follows(true, rows.order_);
     table<Rows>().write(rows.piece_);
-    follow(rows.order_, true);
+    std::get<Written<Rows>>(tables_).order = rows.order_;
   }
 
   /// Writes the findings and closes the file. Throws std::logic_error unless as many rows as
@@ -126,14 +127,11 @@ class ResultWriter {
     throw std::logic_error(std::string("ResultWriter: no ") + Table<Rows>::kGroup);
   }
 
-  /// Throws std::logic_error unless rows with this order, which ascend, follow those before.
+  /// Throws std::logic_error unless rows ascend, and with this order follow those before.
   template <typename Rows>
-  void follow(const OrderOf<Rows>& order, bool ascend) {
-    OrderOf<Rows>& before = std::get<Written<Rows>>(tables_).order;
-    if (!ascend || !order.follows(before)) {
-      throw std::logic_error("ResultWriter: rows out of order");
-    }
-    before = order;
+  void check_follows(bool ascend, const OrderOf<Rows>& order) const {
+    if (ascend && order.follows(std::get<Written<Rows>>(tables_).order)) return;
+    throw std::logic_error("ResultWriter: rows out of order");
   }
 
   ResultHeader header_;

@@ -272,10 +272,12 @@ const char* model_as(std::uint64_t solids, std::uint64_t triangles) {
   return solids > 0 ? "solid" : triangles > 0 ? "surface" : "points";
 }
 
-Json result_facts(const ResultHeader& header, ResultFindings findings) {
+Json result_facts(ResultHeader header, ResultFindings findings) {
   if (!header.bodies.empty() && !findings.searched) findings.searched.emplace();
-  Json facts = as_header(header);
-  for (auto& [key, fact] : as_header(std::move(findings)).items()) facts[key] = std::move(fact);
+  Json facts = Json::object();
+  HeaderValues values(facts);
+  keep_facts(values, header);
+  keep_facts(values, findings);
   return facts;
 }
 

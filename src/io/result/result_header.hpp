@@ -136,7 +136,7 @@ struct ResultFindings {
 };
 
 /// The facts of a result for the header of its file.
-Json result_facts(const ResultHeader& header, ResultFindings findings);
+Json result_facts(ResultHeader header, ResultFindings findings);
 
 /// Reads the facts of a result or of a part. Throws InputError for those that no run writes.
 void read_result_facts(const TableFile& file, ResultHeader& header, ResultFindings& findings);

@@ -3,10 +3,10 @@
 #include <fstream>
 #include <functional>
 
-#include "io/files/stored_chunk.hpp"
+#include "io/files/fletcher32.hpp"
 #include "io/result/sample_result.hpp"
 #include "support/catch.hpp"
-#include "support/change_hdf5.hpp"
+#include "support/change_header.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
 
@@ -37,7 +37,7 @@ TEST_CASE("what is not a result is refused") {
   for (const auto& [name, words] : {std::pair("missing.h5", "No such file"),
                                     {"empty.h5", "not an HDF5 file"},
                                     {"text.h5", "text.h5"},
-                                    {"other.h5", "other.h5 ... not a result of clearway run"}}) {
+                                    {"other.h5", "other.h5 ... is not a result; expected a file of clearway run"}}) {
     check_refused([&, file = name] { return ResultReader(folder / file); }, words);
   }
 }
@@ -108,8 +108,8 @@ TEST_CASE("a chunk of zeros or with other values is noticed by whoever reads its
           std::swap(chunk.front(), chunk[chunk.size() / 2]);
         }
         if (chunk == values) continue;
-        chunk.resize(chunk.size() + hdf5::kChecksumBytes);
-        hdf5::seal_chunk(std::as_writable_bytes(std::span(chunk)));
+        const std::uint32_t checksum = fletcher32(std::as_bytes(std::span(chunk)));
+        chunk.append(reinterpret_cast<const char*>(&checksum), sizeof checksum);
         put_bytes(path, std::string(bytes).replace(at, chunk.size(), chunk));
         const ResultReader reader(path);
         CHECK_THROWS_AS(reader.all<Rows>(), InputError);
@@ -130,71 +130,82 @@ TEST_CASE("a chunk of zeros or with other values is noticed by whoever reads its
 TEST_CASE("a result whose datasets or attributes are not those of a run is refused by name") {
   using Path = std::filesystem::path;
   const SampleResult plain(sample_header(true), 3), vehicle(full_header(3), 3);
-  const auto with = [&](const char* name, const auto& values, std::uint64_t columns = 0) {
-    return [=](const Path& path) { replace_dataset(path, name, values, columns); };
+  const auto with = [&](const char* name, const auto& values) {
+    return [=](const Path& path) { change_column(path, name, values); };
+  };
+  const auto fact = [](const char* name, const Json& value) {
+    return [=](const Path& path) {
+      change_header(path, [&](Json& header) { header[name] = value; });
+    };
   };
   const auto without = [](const char* name) {
-    return [=](const Path& path) { remove_link(path, name); };
-  };
-  const auto number = [](const char* name, auto value) {
-    return [=](const Path& path) {
-      replace_attribute(path, name,
-                        [&](const hdf5::Id& file) { hdf5::write_number(file, name, value); });
-    };
-  };
-  const auto numbers = [](const char* name, const std::vector<double>& values, int columns) {
-    return [=](const Path& path) {
-      replace_attribute(path, name, [&](const hdf5::Id& file) {
-        hdf5::write_attribute<double>(file, name, values, static_cast<std::uint64_t>(columns));
-      });
-    };
-  };
-  const auto text = [](const char* name, const std::string& value) {
-    return [=](const Path& path) {
-      replace_attribute(path, name,
-                        [&](const hdf5::Id& file) { hdf5::write_attribute(file, name, value); });
-    };
+    return [=](const Path& path) { change_header(path, [&](Json& header) { header.erase(name); }); };
   };
   using Indices = std::vector<std::uint32_t>;
   using Sources = std::vector<std::uint64_t>;
   using Numbers = std::vector<double>;
-  check_refused_file(plain, "collisions/source", with("/collisions/source", Indices{1, 2, 3}));
-  check_refused_file(plain, "collisions/xyz",
-                     with("/collisions/xyz", Numbers{1, 2, 3, 4, 5, 6}, 2));
-  check_refused_file(plain, "rows", with("/collisions/first_pose", Indices{1, 2}));
-  check_refused_file(plain, "collisions/first_pose", without("/collisions/first_pose"));
-  check_refused_file(plain, "warnings", without("/warnings"));
-  check_refused_file(plain, "row 2", with("/collisions/source", Sources{1, 3, 3}));
-  check_refused_file(plain, "row 2", with("/collisions/source", Sources{1, 2, 5'000'000'000}));
-  check_refused_file(plain, "row 1",
-                     with("/collisions/xyz", Numbers{1, 2, 3, 4, NAN, 6, 7, 8, 9}, 3));
-  check_refused_file(plain, "row 2", with("/collisions/first_pose", Indices{1, 2, 4'000'000'000}));
-  for (const std::uint32_t version : {0u, 5u, 7u, 0xffffffffu}) {
+  check_refused_file(plain, "'collisions/source': expected numbers of the type",
+                     [](const Path& path) {
+                       remove_link(path, "collisions/source");
+                       const hdf5::Id file = open_to_change(path);
+                       hdf5::check(H5Lmove(file.get(), "collisions/first_pose", file.get(),
+                                           "collisions/source", H5P_DEFAULT, H5P_DEFAULT),
+                                   "move");
+                     });
+  check_refused_file(plain, "rows", with("collisions/first_pose", Indices{1, 2}));
+  check_refused_file(plain, "collisions/first_pose", [](const Path& path) {
+    remove_link(path, "collisions/first_pose");
+  });
+  for (const char* name : {"warnings", "poses", "radius", "scale"}) {
+    check_refused_file(plain, std::string("header: '") + name, without(name));
+  }
+  for (const char* name : {"columns", "chunk_hashes"}) {
+    check_refused_file(plain, "its chunk hashes are damaged", without(name));
+  }
+  check_refused_file(plain, "row 2", with("collisions/source", Sources{1, 3, 3}));
+  check_refused_file(plain, "row 2", with("collisions/source", Sources{1, 2, 5'000'000'000}));
+  check_refused_file(plain, "row 1", with("collisions/xyz", Numbers{1, 2, 3, 4, NAN, 6, 7, 8, 9}));
+  check_refused_file(plain, "row 2", with("collisions/first_pose", Indices{1, 2, 4'000'000'000}));
+  for (const std::uint32_t version : {0u, 6u, 8u, 0xffffffffu}) {
     check_refused_file(
         plain,
         "is a result of version " + std::to_string(version) + " of another release; run it again",
-        number("version", version));
+        [&](const Path& path) {
+          replace_attribute(path, "version", [&](const hdf5::Id& file) {
+            hdf5::write_number(file, "version", version);
+          });
+        });
   }
-  for (const char* name : {"/collisions/body", "/clearance/body"}) {
+  for (const char* name : {"collisions/body", "clearance/body"}) {
     check_refused_file(vehicle, "body, row 1: expected one of the bodies",
                        with(name, Indices{0, 3, 2}));
-    check_refused_file(vehicle, "its rows are damaged", with(name, Indices{0, 0, 2}));
   }
-  check_refused_file(vehicle, "'bodies'", text("bodies", "a\n\nb"));
-  check_refused_file(vehicle, "row 2: expected one of the bodies", text("bodies", "a\nb"));
-  check_refused_file(vehicle, "'profile'", number("profile", -0.5));
-  check_refused_file(vehicle, "'profile'", number("profile", std::nan("")));
-  check_refused_file(vehicle, "one for each of 4 poses", number("poses", std::uint64_t{4}));
-  check_refused_file(vehicle, "'model_box'", numbers("model_box", {0, 0, 1, 0, 0, 0}, 3));
-  check_refused_file(vehicle, "model_box", numbers("model_box", {0, 0, 1, 0, 0}, 0));
+  check_refused_file(vehicle, "'bodies'", fact("bodies", {"a", "", "b"}));
+  check_refused_file(vehicle, "'bodies': expected a list", fact("bodies", "a"));
+  check_refused_file(vehicle, "row 2: expected one of the bodies", fact("bodies", {"a", "b"}));
+  check_refused_file(vehicle, "'profile'", fact("profile", -0.5));
+  check_refused_file(vehicle, "'profile': expected a number", fact("profile", std::nan("")));
+  check_refused_file(vehicle, "'seen_min': expected a whole number", fact("seen_min", 1ULL << 32));
+  check_refused_file(vehicle, "'poses': expected a whole number", fact("poses", -1));
+  check_refused_file(vehicle, "'between_poses': expected true", fact("between_poses", 1));
+  check_refused_file(vehicle, "'model_axes'", fact("model_axes", "+x,-x"));
+  check_refused_file(vehicle, "'scale': expected 3 values", fact("scale", {1.0, 1.0}));
+  check_refused_file(vehicle, "'crs_wkt': expected a text", fact("crs_wkt", 4326));
+  check_refused_file(vehicle, "one for each of 4 poses", fact("poses", 4));
+  const auto box = [&](const Json& lo) {
+    return fact("model_box", {{"lo", lo}, {"hi", {0.0, 0.0, 0.0}}});
+  };
+  check_refused_file(vehicle, "'model_box'", box({0.0, 0.0, 1.0}));
+  check_refused_file(vehicle, "'lo': expected 3 values", box({0.0, 0.0}));
+  check_refused_file(vehicle, "'lo': expected a number", box({0.0, 0.0, nullptr}));
   SampleResult floor(full_header(3), 3);
   floor.header.floor = 0.2;
-  check_refused_file(floor, "attribute 'body_floors' is missing; run it again", [](const Path&) {});
+  check_refused_file(floor, "'body_floors' is missing; run it again", [](const Path&) {});
   // Sources that do not ascend from one batch to the next.
   const SampleResult large(sample_header(false), 65'537);
   Sources sources = large.rows.source;
   sources.back() = sources[65'535];
-  check_refused_file(large, "row 65536", with("/collisions/source", sources));
+  check_refused_file(large, "row 65536", with("collisions/source", sources));
 }
 
 TEST_CASE("rows that no run can have found are faults, wherever they are") {
@@ -208,7 +219,9 @@ TEST_CASE("rows that no run can have found are faults, wherever they are") {
     sample.near = sound.near;
     sample.profile = sound.profile;
     change(sample.near, sample.profile);
+    const auto chainage = std::exchange(sample.profile.chainage, sound.profile.chainage);
     sample.write();
+    change_column(sample.path(), "profile/chainage", chainage);
     check_says(sample.fault(), dataset + ", row ");
   };
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
