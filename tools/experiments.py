@@ -66,7 +66,8 @@ def sizes(scene, size):
 def judged(result, truth):
     """What a result decides wrongly, from exact distances that reach beyond the radius."""
     with h5py.File(result) as got, h5py.File(truth) as right:
-        points, radius = int(right.attrs["environment_points"][0]), float(right.attrs["radius"][0])
+        facts = json.loads(bytes(right["header"][:]))
+        points, radius = facts["environment_points"], facts["radius"]
         found, expected = got["collisions/source"][:], right["collisions/source"][:]
         known, distances = right["clearance/source"][:], right["clearance/distance"][:]
     false_hits = np.setdiff1d(found[found < points], expected, assume_unique=True)
@@ -92,7 +93,8 @@ def compared(result, reference):
 def near_boundary(truth):
     """How many points lie within 1, 2, 4 ... ulps of the radius."""
     with h5py.File(truth) as right:
-        points, radius = int(right.attrs["environment_points"][0]), float(right.attrs["radius"][0])
+        facts = json.loads(bytes(right["header"][:]))
+        points, radius = facts["environment_points"], facts["radius"]
         off = np.sort(np.abs(right["clearance/distance"][:] - radius))
     within = np.searchsorted(off, np.spacing(radius) * 2.0 ** np.arange(41), "right")
     return {"environment_points": points, "within_ulps": within.tolist()}

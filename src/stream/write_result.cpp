@@ -222,11 +222,10 @@ void write_rows(ResultWriter& writer, const RowMeaning& meaning, std::span<const
   });
   constexpr auto kInOrder = tbb::filter_mode::serial_in_order;
   scope.begin();
-  tbb::parallel_pipeline(
-      at_once, tbb::make_filter<void, std::span<const Row>>(kInOrder, take) &
-                   tbb::make_filter<std::span<const Row>, Handed<Piece>>(tbb::filter_mode::parallel,
-                                                                         encoded) &
-                   tbb::make_filter<Handed<Piece>, void>(kInOrder, write));
+  tbb::parallel_pipeline(at_once, tbb::make_filter<void, std::span<const Row>>(kInOrder, take) &
+                                      tbb::make_filter<std::span<const Row>, Handed<Piece>>(
+                                          tbb::filter_mode::parallel, encoded) &
+                                      tbb::make_filter<Handed<Piece>, void>(kInOrder, write));
 }
 
 /// Number of poses that are written at a time.

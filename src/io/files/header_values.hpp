@@ -22,8 +22,8 @@ namespace clearway {
 
 /// Writes facts into the header of a file, or reads them from one: both by the same calls, so that
 /// what is kept is listed once. A struct lists its own in a function `void keep_facts(HeaderValues&
-/// values, Struct& facts)` of its namespace, which calls values.add(). Reading throws InputError for
-/// a fact that is missing or has another form.
+/// values, Struct& facts)` of its namespace, which calls values.add(). Reading throws InputError
+/// for a fact that is missing or has another form.
 class HeaderValues {
  public:
   /// Writes into an object.
@@ -80,12 +80,15 @@ class HeaderValues {
   using Numbers = decltype(Message::numbers);
 
   template <typename Value>
-  static constexpr bool is_list = requires(Value& value) { value.begin(); value.end(); } &&
-                                  !std::is_same_v<Value, std::string>;
+  static constexpr bool is_list = requires(Value& value) {
+    value.begin();
+    value.end();
+  }
+  &&!std::is_same_v<Value, std::string>;
 
   template <typename Value>
   static Json put(Value& value) {
-    if constexpr (requires(HeaderValues& values) { keep_facts(values, value); }) {
+    if constexpr (requires(HeaderValues & values) { keep_facts(values, value); }) {
       Json object = Json::object();
       HeaderValues within(object);
       keep_facts(within, value);
@@ -107,7 +110,7 @@ class HeaderValues {
 
   template <typename Value>
   void take(const Json& json, const std::string& key, Value& value) const {
-    if constexpr (requires(HeaderValues& values) { keep_facts(values, value); }) {
+    if constexpr (requires(HeaderValues & values) { keep_facts(values, value); }) {
       if (!json.is_object()) refuse_fact(key, "an object");
       HeaderValues within(json, *file_);
       keep_facts(within, value);

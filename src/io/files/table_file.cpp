@@ -87,9 +87,9 @@ void write_whole(const hdf5::Id& file, const char* name, std::span<const Value> 
   const TableColumn column = table_column<Value>(name);
   hdf5::Id dataset = create_dataset(file, name, column, values.size());
   if (values.empty()) return;
-  hdf5::check(H5Dwrite(dataset.get(), file_type(column.type), H5S_ALL, H5S_ALL, H5P_DEFAULT,
-                       values.data()),
-              std::string("write ") + name);
+  hdf5::check(
+      H5Dwrite(dataset.get(), file_type(column.type), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()),
+      std::string("write ") + name);
   dataset.close(std::string("write ") + name);
 }
 
@@ -119,11 +119,11 @@ hdf5::Id open_checked(const hdf5::Id& file, const std::string& path, const Table
   const hdf5::Id list(H5Dget_create_plist(dataset.get()), H5Pclose, "HDF5 property list");
   std::array<hsize_t, 2> chunk{0, form.numbers};
   const bool as_written =
-      rows == 0 ? H5Pget_layout(list.get()) == H5D_CONTIGUOUS
-                : H5Pget_layout(list.get()) == H5D_CHUNKED &&
-                      H5Pget_chunk(list.get(), dimensions, chunk.data()) == dimensions &&
-                      chunk[0] == rows_of_chunk(rows, form.value_bytes()) &&
-                      chunk[1] == form.numbers;
+      rows == 0
+          ? H5Pget_layout(list.get()) == H5D_CONTIGUOUS
+          : H5Pget_layout(list.get()) == H5D_CHUNKED &&
+                H5Pget_chunk(list.get(), dimensions, chunk.data()) == dimensions &&
+                chunk[0] == rows_of_chunk(rows, form.value_bytes()) && chunk[1] == form.numbers;
   if (!as_written) hdf5::malformed(name, path, "chunks of rows, as Clearway writes them");
   return dataset;
 }
@@ -202,9 +202,7 @@ void TablePiece::seal() {
 
 struct TableFileWriter::State {
   State(const std::filesystem::path& path, const TableFileKind& kind)
-      : name(path.string()),
-        file(hdf5::create_file(path)),
-        output(File::open_for_writing(path)) {
+      : name(path.string()), file(hdf5::create_file(path)), output(File::open_for_writing(path)) {
     hdf5::write_attribute(file, "format", std::string(kind.format));
     hdf5::write_number(file, "version", kind.version);
   }
@@ -220,9 +218,9 @@ struct TableFileWriter::State {
 
   std::string name;
   hdf5::Id file;
-  File output;                ///< a second handle of the same file
-  std::uint64_t synced = 0;   ///< bytes of the file that are on their way to the disk
-  std::uint64_t promised = 0; ///< bytes of all chunks of the tables
+  File output;                 ///< a second handle of the same file
+  std::uint64_t synced = 0;    ///< bytes of the file that are on their way to the disk
+  std::uint64_t promised = 0;  ///< bytes of all chunks of the tables
   std::deque<TableWriter> tables;
   std::size_t complete = 0;  ///< how many of them are
   Json columns = Json::object();
@@ -402,8 +400,8 @@ struct TableFile::State {
                                    : "";
     const auto found = std::ranges::find(kinds, format, &TableFileKind::format);
     if (found == kinds.end()) {
-      refuse(name, std::string("is not ") + kinds[0].is_a + "; expected a file of " +
-                       kinds[0].made_by);
+      refuse(name,
+             std::string("is not ") + kinds[0].is_a + "; expected a file of " + kinds[0].made_by);
     }
     const auto version = hdf5::read_number<std::uint32_t>(file, "version", name);
     if (version != found->version) {
@@ -521,7 +519,9 @@ struct StoredColumn::Source {
   }
 };
 
-std::uint64_t StoredColumn::hash() const { return xxh64(std::as_bytes(std::span(source_->hashes))); }
+std::uint64_t StoredColumn::hash() const {
+  return xxh64(std::as_bytes(std::span(source_->hashes)));
+}
 
 void StoredColumn::read_bytes(std::uint64_t first, std::span<std::byte> out,
                               const Check& check) const {
@@ -590,8 +590,8 @@ StoredColumn TableFile::open(const std::string& path, const TableColumn& form) c
     if (recorded == state_->columns.end()) refuse(name(), "/" + path + " is missing");
     StoredColumn column;
     const auto source = std::make_shared<StoredColumn::Source>();
-    source->dataset = open_checked(state_->file, path, form, state_->bytes->size_bytes(), name(),
-                                   column.rows_);
+    source->dataset =
+        open_checked(state_->file, path, form, state_->bytes->size_bytes(), name(), column.rows_);
     source->name = name();
     source->path = path;
     source->bytes = state_->bytes;

@@ -33,7 +33,15 @@ struct TableFileKind {
   const char* again;      ///< what to do with one of another version, as in "run it again"
 };
 
-enum class NumberType : std::uint8_t { kUint8, kUint16, kInt32, kUint32, kInt64, kUint64, kFloat64 };
+enum class NumberType : std::uint8_t {
+  kUint8,
+  kUint16,
+  kInt32,
+  kUint32,
+  kInt64,
+  kUint64,
+  kFloat64
+};
 
 /// A column of a table, and the form of its values.
 struct TableColumn {

@@ -117,7 +117,7 @@ class TableOfOutlines {
   std::vector<Message>* messages_;
   OutlineTable table_;
   TextColumn from_, to_;
-  std::optional<TextColumn> outline_, margin_;                ///< no outline: before the header
+  std::optional<TextColumn> outline_, margin_;                 ///< no outline: before the header
   std::map<std::string, std::vector<OutlinePoint>> outlines_;  ///< by the names in the table
 };
 

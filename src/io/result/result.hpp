@@ -23,7 +23,8 @@ inline constexpr std::uint32_t kResultVersion = 7;
 /// A whole result, and a part, which no reader takes for a result.
 inline constexpr TableFileKind kResultKinds[]{
     {"clearway result", kResultVersion, "a result", "clearway run", "run it again"},
-    {"clearway part", kResultVersion, "a part of a result", "clearway run --shard", "run it again"}};
+    {"clearway part", kResultVersion, "a part of a result", "clearway run --shard",
+     "run it again"}};
 
 /// The values of the columns that a result with this header has. Throws std::logic_error where
 /// others have values, or where their lengths differ.

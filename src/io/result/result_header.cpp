@@ -47,8 +47,7 @@ void check_lists(const ResultHeader& header, const std::string& name) {
   if (is_too_many(counts.points) ||
       std::any_of(counts.of_classes.begin(), counts.of_classes.end(), is_too_many) ||
       std::any_of(counts.in_boxes.begin(), counts.in_boxes.end(), is_too_many)) {
-    refuse(name,
-           "'ignored' counts more points than the environment has, " + std::to_string(most));
+    refuse(name, "'ignored' counts more points than the environment has, " + std::to_string(most));
   }
 }
 
@@ -64,8 +63,8 @@ ModelAxes axes_of(const std::string& text, const HeaderValues& values) {
       if (!along_one_line(axes.forward, axes.up) && text_of(axes) == text) return axes;
     }
   }
-  values.refuse_fact("model_axes", "the axes that point ahead and up, for example +y,+z, found " +
-                                       excerpt(text));
+  values.refuse_fact("model_axes",
+                     "the axes that point ahead and up, for example +y,+z, found " + excerpt(text));
 }
 
 /// A number that has to be finite and 0 or above.
@@ -89,8 +88,8 @@ void check_searched(const SearchedLength& read, const std::string& name) {
   const bool sound = std::isfinite(read.path) && read.whole >= 0 && read.whole <= read.path &&
                      read.part >= 0 && read.part <= read.path;
   if (sound) return;
-  refuse(name, "the searched lengths are " +
-                   format_number(read.whole) + " and " + format_number(read.part) +
+  refuse(name, "the searched lengths are " + format_number(read.whole) + " and " +
+                   format_number(read.part) +
                    ", expected lengths up to that of the path, which is " +
                    format_number(read.path));
 }
@@ -105,8 +104,8 @@ void check_seen(const SeenSummary& seen, const std::string& name) {
 void check_at_most(std::uint64_t count, std::uint64_t most, const char* fact,
                    const std::string& name) {
   if (count <= most) return;
-  refuse(name, "'" + std::string(fact) + "' is " + std::to_string(count) +
-                   ", expected at most " + std::to_string(most));
+  refuse(name, "'" + std::string(fact) + "' is " + std::to_string(count) + ", expected at most " +
+                   std::to_string(most));
 }
 
 void check_header(const ResultHeader& header, const std::string& name) {
@@ -123,8 +122,8 @@ void check_header(const ResultHeader& header, const std::string& name) {
   }
   if (header.budget) check_budget(*header.budget, header.gap, name);
   if (header.part && !header.part->shard.is_valid()) {
-    refuse(name, "'shard' is " + to_string(header.part->shard) +
-                     ", expected a part of at most " + std::to_string(Shard::kMost));
+    refuse(name, "'shard' is " + to_string(header.part->shard) + ", expected a part of at most " +
+                     std::to_string(Shard::kMost));
   }
 }
 

@@ -40,8 +40,8 @@ void ResultReader::open(StoredTable<Rows>& table) const {
     if (!column.is_in(header_)) return;
     stored = file_.column<Value>(std::string(Table<Rows>::kGroup) + "/" + column.dataset);
     if (!std::exchange(first, false) && stored->rows() != table.rows) {
-      refuse(name(), std::string("the datasets of /") + Table<Rows>::kGroup +
-                         " differ in their rows");
+      refuse(name(),
+             std::string("the datasets of /") + Table<Rows>::kGroup + " differ in their rows");
     }
     table.rows = stored->rows();
   });
@@ -100,14 +100,17 @@ std::vector<Value> ResultReader::column(std::vector<Value> Rows::*values) const 
 }
 
 template std::uint64_t ResultReader::table_hash<Collisions>() const;
-template void ResultReader::read(std::uint64_t, std::size_t, Collisions&, OrderOf<Collisions>) const;
-template void ResultReader::read(std::uint64_t, std::size_t, Clearances&, OrderOf<Clearances>) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
+                                 OrderOf<Collisions>) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Clearances&,
+                                 OrderOf<Clearances>) const;
 template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
                                  OrderOf<ProfileRows>) const;
 template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, OrderOf<Nearby>) const;
 template void ResultReader::read(std::uint64_t, std::size_t, UnseenCubes&,
                                  OrderOf<UnseenCubes>) const;
-template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&, OrderOf<SweptCells>) const;
+template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&,
+                                 OrderOf<SweptCells>) const;
 template std::vector<std::uint64_t> ResultReader::column(
     std::vector<std::uint64_t> Collisions::*) const;
 template std::vector<Vec3> ResultReader::column(std::vector<Vec3> Collisions::*) const;

@@ -81,8 +81,7 @@ void Table<Collisions>::check(const RowsRead& read, const Collisions& rows) {
   for (std::size_t i = 0; i < rows.depth.size(); ++i) {
     const bool is_free = rows.depth_source[i] != Collisions::kNoPoint;
     if (is_free && rows.depth_source[i] >= read.header.environment_points) {
-      read.refuse_row("depth_source", i,
-                      "an index below environment_points, or 2^64 - 1 for none");
+      read.refuse_row("depth_source", i, "an index below environment_points, or 2^64 - 1 for none");
     }
     if (is_free ? !(rows.depth[i] >= 0) : !std::isnan(rows.depth[i])) {
       read.refuse_row("depth", i,

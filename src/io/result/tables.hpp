@@ -103,8 +103,7 @@ struct Table<Collisions> : AscendingSources<Collisions> {
   static bool is_in(const ResultHeader&) { return true; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
-                                  check_sources},
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result, check_sources},
       Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
       Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses,
@@ -117,9 +116,8 @@ struct Table<Collisions> : AscendingSources<Collisions> {
       Column<Rows, std::uint8_t>{"certain", &Rows::certain,
                                  [](const ResultHeader& h) { return h.budget.has_value(); },
                                  check_flags},
-      Column<Rows, double>{"depth", &Rows::depth,
-                           [](const ResultHeader& h) { return h.depth; }, check_with_rows<double>,
-                           "distance to nearest free point"},
+      Column<Rows, double>{"depth", &Rows::depth, [](const ResultHeader& h) { return h.depth; },
+                           check_with_rows<double>, "distance to nearest free point"},
       Column<Rows, std::uint64_t>{"depth_source", &Rows::depth_source,
                                   [](const ResultHeader& h) { return h.depth; },
                                   check_with_rows<std::uint64_t>, "index of that free point"},
@@ -137,8 +135,7 @@ struct Table<Nearby> : AscendingSources<Nearby> {
   static bool is_in(const ResultHeader& header) { return header.budget.has_value(); }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
-                                  check_sources},
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result, check_sources},
       Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
       Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose,
                                   [](const ResultHeader& h) { return h.first_pose; }, check_poses,
@@ -159,11 +156,10 @@ struct Table<Clearances> : AscendingSources<Clearances> {
   static bool is_in(const ResultHeader& header) { return header.clearance > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
-                                  check_sources},
+      Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result, check_sources},
       Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_points},
-      Column<Rows, double>{"distance", &Rows::distance, in_every_result,
-                           check_clearances, "least distance to the model"},
+      Column<Rows, double>{"distance", &Rows::distance, in_every_result, check_clearances,
+                           "least distance to the model"},
       Column<Rows, std::uint32_t>{"pose", &Rows::pose, in_every_result, check_poses,
                                   "pose that has the distance"},
       Column<Rows, std::uint32_t>{"body", &Rows::body,
@@ -182,13 +178,11 @@ struct Table<ProfileRows> {
   static bool is_in(const ResultHeader& header) { return header.profile > 0; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, double>{"distance", &Rows::distance, in_every_result,
-                           check_with_rows<double>},
+      Column<Rows, double>{"distance", &Rows::distance, in_every_result, check_with_rows<double>},
       Column<Rows, std::uint64_t>{"source", &Rows::source, in_every_result,
                                   check_with_rows<std::uint64_t>},
       Column<Rows, Vec3>{"xyz", &Rows::xyz, in_every_result, check_with_rows<Vec3>},
-      Column<Rows, double>{"chainage", &Rows::chainage, in_every_result,
-                           check_chainages},
+      Column<Rows, double>{"chainage", &Rows::chainage, in_every_result, check_chainages},
       Column<Rows, double>{"squared", &Rows::squared,
                            [](const ResultHeader& h) { return h.part.has_value(); },
                            check_with_rows<double>},
@@ -215,10 +209,8 @@ struct Table<UnseenCubes> {
   static constexpr std::tuple kColumns{
       Column<Rows, std::array<std::int32_t, 3>>{"cube", &Rows::cube, in_every_result,
                                                 check_with_rows<std::array<std::int32_t, 3>>},
-      Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose, in_every_result,
-                                  check_poses},
-      Column<Rows, std::uint32_t>{"group", &Rows::group, in_every_result,
-                                  check_groups},
+      Column<Rows, std::uint32_t>{"first_pose", &Rows::first_pose, in_every_result, check_poses},
+      Column<Rows, std::uint32_t>{"group", &Rows::group, in_every_result, check_groups},
       Column<Rows, double>{"chainage", &Rows::chainage,
                            [](const ResultHeader& h) { return h.part.has_value(); }, check_steps},
       Column<Rows, double>{"step", &Rows::step,
@@ -241,10 +233,8 @@ struct Table<SweptCells> {
   static bool is_in(const ResultHeader& header) { return header.seen; }
 
   static constexpr std::tuple kColumns{
-      Column<Rows, std::array<std::int32_t, 3>>{"cell", &Rows::cell, in_every_result,
-                                                check_cells},
-      Column<Rows, std::uint64_t>{"parts", &Rows::parts, in_every_result,
-                                  check_parts}};
+      Column<Rows, std::array<std::int32_t, 3>>{"cell", &Rows::cell, in_every_result, check_cells},
+      Column<Rows, std::uint64_t>{"parts", &Rows::parts, in_every_result, check_parts}};
 
   static constexpr auto kOrder = &Rows::cell;
   static constexpr const char* kOrderDataset = "cell";

@@ -79,8 +79,9 @@ struct Sample {
 
 }  // namespace
 
-TEST_CASE("a file of tables is read as it was written, by HDF5 too, and its bytes depend on its "
-          "contents alone") {
+TEST_CASE(
+    "a file of tables is read as it was written, by HDF5 too, and its bytes depend on its "
+    "contents alone") {
   const ScratchFolder folder;
   const auto kind = GENERATE(as<std::string>(), "random", "zero", "all bits", "one bit");
   const auto rows = GENERATE(as<std::size_t>(), 0, 1, 2, 7, 15, 4095, 65'536, 65'537, 150'001);
@@ -119,8 +120,7 @@ TEST_CASE("any range of a column is read, and is checked") {
     for (const std::size_t count : {0u, 1u, 2u, 40'000u, 150'001u}) {
       if (count > sample.numbers.size() - first) continue;
       const auto from = sample.numbers.begin() + static_cast<std::ptrdiff_t>(first);
-      CHECK(read(first, count) ==
-            std::vector(from, from + static_cast<std::ptrdiff_t>(count)));
+      CHECK(read(first, count) == std::vector(from, from + static_cast<std::ptrdiff_t>(count)));
     }
   }
   CHECK_THROWS_AS(read(150'000, 2), std::logic_error);

@@ -34,10 +34,11 @@ TEST_CASE("what is not a result is refused") {
   put_bytes(folder / "empty.h5", "");
   put_bytes(folder / "text.h5", "x y z\n1 2 3\n");
   hdf5::create_file(folder / "other.h5");
-  for (const auto& [name, words] : {std::pair("missing.h5", "No such file"),
-                                    {"empty.h5", "not an HDF5 file"},
-                                    {"text.h5", "text.h5"},
-                                    {"other.h5", "other.h5 ... is not a result; expected a file of clearway run"}}) {
+  for (const auto& [name, words] :
+       {std::pair("missing.h5", "No such file"),
+        {"empty.h5", "not an HDF5 file"},
+        {"text.h5", "text.h5"},
+        {"other.h5", "other.h5 ... is not a result; expected a file of clearway run"}}) {
     check_refused([&, file = name] { return ResultReader(folder / file); }, words);
   }
 }
@@ -134,12 +135,12 @@ TEST_CASE("a result whose datasets or attributes are not those of a run is refus
     return [=](const Path& path) { change_column(path, name, values); };
   };
   const auto fact = [](const char* name, const Json& value) {
-    return [=](const Path& path) {
-      change_header(path, [&](Json& header) { header[name] = value; });
-    };
+    return
+        [=](const Path& path) { change_header(path, [&](Json& header) { header[name] = value; }); };
   };
   const auto without = [](const char* name) {
-    return [=](const Path& path) { change_header(path, [&](Json& header) { header.erase(name); }); };
+    return
+        [=](const Path& path) { change_header(path, [&](Json& header) { header.erase(name); }); };
   };
   using Indices = std::vector<std::uint32_t>;
   using Sources = std::vector<std::uint64_t>;
@@ -153,9 +154,8 @@ TEST_CASE("a result whose datasets or attributes are not those of a run is refus
                                    "move");
                      });
   check_refused_file(plain, "rows", with("collisions/first_pose", Indices{1, 2}));
-  check_refused_file(plain, "collisions/first_pose", [](const Path& path) {
-    remove_link(path, "collisions/first_pose");
-  });
+  check_refused_file(plain, "collisions/first_pose",
+                     [](const Path& path) { remove_link(path, "collisions/first_pose"); });
   for (const char* name : {"warnings", "poses", "radius", "scale"}) {
     check_refused_file(plain, std::string("header: '") + name, without(name));
   }
