@@ -6,11 +6,13 @@ what a command printed on standard output or on standard error, its exit code, o
 or changed. Exit code 1: an output differs.
 The driver of the texts is that of the new build; it runs this script in the place of the program, which
 runs the program and keeps its outputs. --data adds real files: each is converted, and described.
+Files of HDF5 are compared by dump.py beside this script, which knows their layouts.
 Needs h5py and numpy (Debian: python3-h5py).
 Example: tools/bench/same_outputs.py before/clearway build/release/tools/clearway --data DATA
 """
 
 import argparse
+import difflib
 import io
 import os
 import re
@@ -23,12 +25,12 @@ import zipfile
 from pathlib import Path
 
 if "CLEARWAY_RECORDED" not in os.environ:  # not needed in the place of the program, which is often run
-    import h5py
+    import dump
     import numpy
 
 TEXTS = Path(__file__).resolve().parents[2] / "tests" / "commands"
 # What depends on the clock: what stands for it, and why it may differ.
-CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
+MAY_DIFFER = [(re.compile(pattern), word) for pattern, word, _ in (
     (rb"\b\d[\d,]*(\.\d+)? (ms|s|min|h)\b", b"TIME", "seconds that a step took"),
     (rb"\b(count|distribute|partition|confirm) \d+\.\d+", rb"\1 TIME", "seconds of a conversion"),
     (rb'"(\w*seconds)": ?\{[^{}]*\}', rb'"\1": TIME', "seconds of the steps of a command"),
@@ -40,6 +42,11 @@ CLOCK = [(re.compile(pattern), word) for pattern, word, _ in (
     (rb'"outputs_id": ?"\w+"', b'"outputs_id": HASH', "hash of commands that name the folder"),
     (rb'"modified": ?-?\d+', b'"modified": TIME', "time of an input file"),
     (rb"tests: [^\n]*", b"tests: COUNTS", "threads find points of a profile in any order"),
+)]
+# Also only where HDF5 files have another layout (--layout).
+LAYOUT = [(re.compile(pattern), word) for pattern, word, _ in (
+    (rb'("kind": "(result|store)",\s+"version": )\d+', rb"\1VERSION", "version of a file, in clearway info"),
+    (rb'("result":\{"name":"[^"]*","hash":")\w+', rb"\1HASH", "hash of a result's facts, in a page"),
 )]
 # Outputs that depend on it: what a command prints, and these files. All others have to be equal.
 TELLS_TIME = re.compile(r"(^|/)(stdout|stderr|log\.txt|plan\.json|run\.json|state\.json)$|\.html$")
@@ -92,7 +99,7 @@ def neutral(name, data, words):
     """Without what names the program, its folder and version, or depends on the clock."""
     for word, stands_for in words:
         data = data.replace(word, stands_for)
-    for pattern, word in CLOCK if TELLS_TIME.search(name) else ():
+    for pattern, word in MAY_DIFFER if TELLS_TIME.search(name) else ():
         data = pattern.sub(word, data)
     return data
 
@@ -101,6 +108,7 @@ def difference(name, old, new, words):
     """Where an output first differs; None where both say the same. words: of the two programs."""
     if old is None or new is None:
         return "is new" if old is None else "is missing"
+    layouts = [b"header_hash" in data for data in (old, new)]
     old, new = (neutral(name, data, of) for data, of in zip((old, new), words))
     if old == new:
         return None
@@ -119,7 +127,8 @@ def difference(name, old, new, words):
         if isinstance(one, numpy.ndarray) and (one.dtype, one.shape, one.tobytes()) != (
                 other.dtype, other.shape, other.tobytes()):
             return f"{part}: {one.dtype} {one.shape}, now {other.dtype} {other.shape}: {first_value(one, other)}"
-    if read is zipped:  # its members are compressed, in which the version stands
+    # The members of a zip archive are compressed, and the version stands in them.
+    if read is zipped or (read is hdf5 and layouts[0] != layouts[1]):
         return None
     return first_difference(old, new)
 
@@ -141,28 +150,9 @@ def first_value(old, new):
 
 
 def hdf5(data):
-    """Attributes and datasets by their paths."""
-    parts = {}
-    with h5py.File(io.BytesIO(data), "r") as file:
-        def add(name, item):
-            for attribute in sorted(item.attrs):
-                parts[f"/{name}@{attribute}"] = numpy.asarray(item.attrs[attribute]).astype(
-                    bytes if isinstance(item.attrs[attribute], str) else None)
-            if isinstance(item, h5py.Dataset):
-                parts[f"/{name}"] = values(item)
-        add("", file)
-        file.visititems(add)
-    return parts
-
-
-def values(dataset):
-    """The values; of a dataset that only Clearway unpacks, the bytes as they are stored."""
-    try:
-        found = numpy.asarray(dataset[()])
-        return found.astype(bytes) if found.dtype == object else found
-    except OSError:
-        chunks = [dataset.id.get_chunk_info(i).chunk_offset for i in range(dataset.id.get_num_chunks())]
-        return b"".join(dataset.id.read_direct_chunk(offset)[1] for offset in chunks)
+    """Facts, as texts, and columns."""
+    facts, columns = dump.read(data)
+    return {**{name: repr(fact).encode() for name, fact in facts.items()}, **columns}
 
 
 def zipped(data):
@@ -221,6 +211,20 @@ def answers(program, more, options, work):
     return records
 
 
+def same_questions(old, new):
+    """The pairs of records with the same words, in their order, and the words of the others: a text
+    leaves a test where an answer is not as it expects."""
+    words = [[(record / "words").read_text().replace((record / "folder").read_text(), ".").replace("\n", " ")
+              for record in records] for records in (old, new)]
+    pairs, others = [], []
+    for what, i, i_end, j, j_end in difflib.SequenceMatcher(None, *words, autojunk=False).get_opcodes():
+        if what == "equal":
+            pairs += zip(old[i:i_end], new[j:j_end])
+        else:
+            others += words[0][i:i_end] + words[1][j:j_end]
+    return pairs, others
+
+
 def outputs_of(record):
     return {str(path.relative_to(record)): path.read_bytes() for path in record.rglob("*") if path.is_file()}
 
@@ -249,9 +253,12 @@ def main():
     parser.add_argument("--data", type=Path, metavar="FOLDER", help="folders of real files to ask about too")
     parser.add_argument("--more", default="", metavar="OPTIONS",
                         help="options of each run of NEW_CLEARWAY, as '--device cuda'; results alone are compared")
+    parser.add_argument("--layout", action="store_true",
+                        help="the programs write HDF5 files of different layouts: versions may differ")
     parser.add_argument("--only", metavar="PATTERN", help="regular expression of texts and folders to ask of")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="an empty folder for all outputs, which stay")
     options = parser.parse_args()
+    MAY_DIFFER.extend(LAYOUT if options.layout else ())
     options.driver = options.driver or options.new.resolve().parents[1] / "tests" / "tools" / "commands_tests"
     work = options.keep or Path(tempfile.mkdtemp(prefix="same_outputs_"))
     try:
@@ -261,10 +268,11 @@ def main():
                     for program in (options.old.resolve(), options.new.resolve())]
         compared = different = asked = 0
         for title, records in old.items():
-            if len(records) != len(new[title]):
-                different += 1
-                print(f"{title}: {len(records)} commands, now {len(new[title])}")
-            for pair in zip(records, new[title]):
+            pairs, others = same_questions(records, new[title])
+            if others:
+                different += len(others)
+                print(f"{title}: only one program was asked: " + "; ".join(others))
+            for pair in pairs:
                 outputs, differ = compare(*pair, versions, options.more)
                 compared, different, asked = compared + outputs, different + differ, asked + 1
     finally:
