@@ -18,6 +18,7 @@
 #include "findings/ledger/ledger_files.hpp"
 #include "findings/ledger_scene.hpp"
 #include "support/catch.hpp"
+#include "support/change_header.hpp"
 #include "support/compare.hpp"
 #include "support/text_rows.hpp"
 
@@ -271,4 +272,17 @@ TEST_CASE("damaged places are refused") {
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 1);
   write_text(scene.places(), bytes);
   CHECK_THROWS_AS(scene.update(one_panel()), InputError);
+}
+
+TEST_CASE("places whose columns contradict each other are refused, though their hashes are right") {
+  Begun scene;
+  const std::string bytes = text_of_file(scene.places());
+  for (const char* column : {"keys", "key_bytes", "numbers", "counts", "places"}) {
+    INFO(column);
+    write_text(scene.places(), bytes);
+    const std::string values = OpenDataset(open_to_change(scene.places()), column).bytes();
+    const std::size_t row = OpenDataset(open_to_change(scene.places()), column).row_bytes();
+    change_column(scene.places(), column, values.substr(row));
+    check_update_refused(scene, "the sizes of its columns contradict each other");
+  }
 }

@@ -3,6 +3,7 @@
 #include <hdf5.h>
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
 #include <memory>
 #include <new>
@@ -10,7 +11,6 @@
 
 #include "core/page/page.hpp"
 #include "fuzz.hpp"
-#include "io/files/hdf5.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/journal.hpp"
@@ -20,6 +20,7 @@
 #include "stream/plan.hpp"
 #include "stream/run_pages.hpp"
 #include "stream/search_journal.hpp"
+#include "support/change_header.hpp"
 #include "support/clouds.hpp"
 #include "support/engines/answer_sets.hpp"
 #include "support/memory_cloud.hpp"
@@ -162,73 +163,56 @@ struct Edit {
     std::memcpy(&where, &bytes[1], 2);
     std::memcpy(&value, &bytes[3], 8);
   }
-  static constexpr const char* kDatasets[] = {"cells/count", "cells/box",     "cells/address",
-                                              "cells/bytes", "cells/xxh64",   "blocks/box",
-                                              "tree/nodes",  "sources/names", "sources/bytes"};
-  static constexpr const char* kAttributes[] = {"point_count", "input_points", "cell_points",
-                                                "points_hash", "scale",        "offset",
-                                                "length_unit", "layout",       "steps"};
-  /// Values of datasets, their extents, and attributes; one more stands for the packed chunks.
-  static constexpr unsigned kThings = 2 * std::size(kDatasets) + std::size(kAttributes);
+  static constexpr const char* kColumns[] = {"cells/count", "cells/box",   "cells/address",
+                                             "cells/bytes", "cells/xxh64", "blocks/box",
+                                             "tree/nodes"};
+  static constexpr const char* kFacts[] = {
+      "point_count", "input_points", "cell_points", "points_hash", "scale",    "offset",
+      "length_unit", "layout",       "steps",       "sources",     "warnings", "columns"};
+  /// Values of columns, their rows, and facts; one more stands for the packed chunks.
+  static constexpr unsigned kThings = 2 * std::size(kColumns) + std::size(kFacts);
 
   bool is_of_chunk() const { return what == kThings; }
 };
 
-struct Dataset {
-  hdf5::Id id, type, space;
+std::string bytes_of_column(const std::filesystem::path& path, const char* name,
+                            std::size_t& row_bytes) {
+  const OpenDataset dataset(open_to_change(path), name);
+  row_bytes = dataset.row_bytes();
+  return dataset.bytes();
+}
 
-  Dataset(hid_t file, const char* name)
-      : id(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose, name),
-        type(H5Dget_type(id.get()), H5Tclose, name),
-        space(H5Dget_space(id.get()), H5Sclose, name) {}
-
-  /// The values; empty where they are too large to be read.
-  std::vector<std::byte> values() const {
-    constexpr hssize_t kMost = 1 << 16;
-    const hssize_t count = H5Sget_simple_extent_npoints(space.get());
-    std::vector<std::byte> values(count > kMost || count < 0 ? 0 : count * H5Tget_size(type.get()));
-    if (values.empty()) return values;
-    hdf5::check(H5Dread(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "");
-    return values;
-  }
-  void write(const void* values) const {
-    hdf5::check(H5Dwrite(id.get(), type.get(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "");
-  }
-};
-
-void edit_dataset(hid_t file, const char* name, const Edit& edit) {
-  const Dataset dataset(file, name);
-  std::vector<std::byte> values = dataset.values();
+void edit_column(const std::filesystem::path& path, const char* name, const Edit& edit) {
+  std::size_t row = 0;
+  std::string values = bytes_of_column(path, name, row);
   if (values.empty()) return;
-  const std::size_t size = H5Tget_size(dataset.type.get());
+  const std::size_t size = std::min<std::size_t>(row, sizeof edit.value);
   std::memcpy(values.data() + edit.where % (values.size() / size) * size, &edit.value, size);
-  dataset.write(values.data());
+  change_column(path, name, values);
 }
 
-/// Replaces a dataset by one of another extent in which nothing is written.
-void resize_dataset(hid_t file, const char* name, const Edit& edit) {
-  const Dataset dataset(file, name);
-  const hdf5::Id list(H5Dget_create_plist(dataset.id.get()), H5Pclose, name);
-  hsize_t extent[2]{};
-  const int rank = H5Sget_simple_extent_dims(dataset.space.get(), extent, nullptr);
-  extent[edit.where % static_cast<unsigned>(rank)] = edit.value >> edit.where % 64;
-  const hid_t other = H5Screate_simple(rank, extent, nullptr);
-  if (other < 0) return;
-  const hdf5::Id other_space(other, H5Sclose, name);
-  hdf5::check(H5Ldelete(file, name, H5P_DEFAULT), name);
-  const hid_t created =
-      H5Dcreate2(file, name, dataset.type.get(), other, H5P_DEFAULT, list.get(), H5P_DEFAULT);
-  if (created >= 0) H5Dclose(created);
+/// Gives a column other rows, of which those that it had not are zero.
+void resize_column(const std::filesystem::path& path, const char* name, const Edit& edit) {
+  constexpr std::uint64_t kMost = 1 << 12;
+  std::size_t row = 0;
+  std::string values = bytes_of_column(path, name, row);
+  values.resize(edit.value % kMost * row);
+  change_column(path, name, values);
 }
 
-void edit_attribute(hid_t file, const char* name, const Edit& edit) {
-  const hdf5::Id attribute(H5Aopen(file, name, H5P_DEFAULT), H5Aclose, name);
-  const hdf5::Id type(H5Aget_type(attribute.get()), H5Tclose, name);
-  std::vector<std::byte> value(H5Aget_storage_size(attribute.get()));
-  hdf5::check(H5Aread(attribute.get(), type.get(), value.data()), name);
-  const std::size_t step = std::min<std::size_t>(8, value.size());
-  std::memcpy(value.data() + edit.where % (value.size() / step) * step, &edit.value, step);
-  hdf5::check(H5Awrite(attribute.get(), type.get(), value.data()), name);
+void edit_fact(const std::filesystem::path& path, const char* name, const Edit& edit) {
+  change_header(path, [&](Json& header) {
+    Json& fact = header[name];
+    if (edit.where % 8 == 0) {
+      header.erase(name);
+    } else if (fact.is_structured() && !fact.empty() && edit.where % 8 != 1) {
+      *std::next(fact.begin(), edit.where % static_cast<std::ptrdiff_t>(fact.size())) = edit.value;
+    } else if (edit.where % 2 == 0) {
+      fact = std::bit_cast<double>(edit.value);
+    } else {
+      fact = edit.value;
+    }
+  });
 }
 
 /// A sound store with cells of 64 points, the last of 44.
@@ -245,33 +229,21 @@ struct SoundStore {
   }
 
   std::string bytes;
-  CellIndex index;
+  ChunkIndex index;
 };
 
 /// Sets the hashes of packed chunks to those of `bytes`.
-void rehash_chunks(hid_t file, std::string_view bytes, const CellIndex& index) {
+void rehash_chunks(const std::filesystem::path& path, std::string_view bytes,
+                   const ChunkIndex& index) {
   std::vector<std::uint64_t> hashes = index.xxh64;
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     hashes[i] = xxh64(std::as_bytes(std::span(bytes.substr(index.address[i], index.bytes[i]))));
   }
-  Dataset(file, "cells/xxh64").write(hashes.data());
+  change_column(path, "cells/xxh64", hashes);
 }
 
-/// Sets `index_hash` to the hash of what the datasets hold.
-void rehash(hid_t file) {
-  ColumnHashes hashes;
-  for (const char* name :
-       {"sources/names", "sources/bytes", "sources/xxh64", "cells/count", "cells/box",
-        "cells/address", "cells/bytes", "cells/xxh64", "blocks/box", "tree/nodes"}) {
-    hashes.add(Dataset(file, name).values());
-  }
-  const std::uint64_t digest = hashes.digest();
-  const hdf5::Id attribute(H5Aopen(file, "index_hash", H5P_DEFAULT), H5Aclose, "index_hash");
-  hdf5::check(H5Awrite(attribute.get(), H5T_NATIVE_UINT64, &digest), "index_hash");
-}
-
-/// A sound store whose checksums hold but whose numbers are arbitrary, so that HDF5 finds nothing
-/// wrong with it. The bytes are a list of edits.
+/// A sound store whose hashes hold but whose numbers are arbitrary, so that nothing but the numbers
+/// is wrong with it. The bytes are a list of edits.
 void edit_store(Bytes input) {
   static const SoundStore sound;
   std::vector<Edit> edits;
@@ -279,7 +251,7 @@ void edit_store(Bytes input) {
     edits.emplace_back(input);
   }
   std::string bytes = sound.bytes;
-  const CellIndex& index = sound.index;
+  const ChunkIndex& index = sound.index;
   for (const Edit& edit : edits) {
     if (!edit.is_of_chunk()) continue;
     const std::size_t chunk = edit.where % index.bytes.size();
@@ -287,20 +259,18 @@ void edit_store(Bytes input) {
     std::memcpy(bytes.data() + index.address[chunk] + at, &edit.value, 8);
   }
   const MemoryFile file(bytes);
-  may_refuse([&] {
-    const hdf5::Id id(H5Fopen(file.path().c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "file");
-    if (bytes != sound.bytes) rehash_chunks(id.get(), bytes, index);
-    for (const Edit& edit : edits) {
-      constexpr unsigned kDatasets = std::size(Edit::kDatasets);
-      const auto act = edit.what < kDatasets       ? edit_dataset
-                       : edit.what < 2 * kDatasets ? resize_dataset
-                                                   : edit_attribute;
-      const char* name = edit.what < 2 * kDatasets ? Edit::kDatasets[edit.what % kDatasets]
-                                                   : Edit::kAttributes[edit.what - 2 * kDatasets];
-      if (!edit.is_of_chunk()) act(id.get(), name, edit);
-    }
-    rehash(id.get());
-  });
+  if (bytes != sound.bytes) rehash_chunks(file.path(), bytes, index);
+  // Facts come last, because the columns are listed among them.
+  std::ranges::stable_sort(edits, {}, &Edit::what);
+  for (const Edit& edit : edits) {
+    constexpr unsigned kColumns = std::size(Edit::kColumns);
+    const auto act = edit.what < kColumns       ? edit_column
+                     : edit.what < 2 * kColumns ? resize_column
+                                                : edit_fact;
+    const char* name = edit.what < 2 * kColumns ? Edit::kColumns[edit.what % kColumns]
+                                                : Edit::kFacts[edit.what - 2 * kColumns];
+    if (!edit.is_of_chunk()) act(file.path(), name, edit);
+  }
   may_refuse([&] { read_store(file.path()); });
 }
 

@@ -5,6 +5,7 @@
 #include "core/section/section_tables.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "library/section_guarantee.hpp"
+#include "support/change_header.hpp"
 #include "support/compare.hpp"
 #include "support/section_scene.hpp"
 #include "support/store_fixture.hpp"
@@ -297,6 +298,50 @@ TEST_CASE("a damaged section is refused wherever it is damaged") {
   put_bytes(tube.folder / "section.h5", bytes.substr(0, bytes.size() / 2));
   CHECK_THROWS_AS(tube.section(), InputError);
   check_refused([&] { Section(tube.folder / "tube.h5"); }, "is not a section");
+}
+
+TEST_CASE("a section that contradicts itself is refused, though its hashes are right") {
+  const Tube tube(9, 10);
+  tube.find();
+  const std::string bytes = tube.bytes();
+  const auto path = tube.folder / "section.h5";
+  const auto check = [&](const std::string& words, const auto& change) {
+    INFO(words);
+    put_bytes(path, bytes);
+    change();
+    check_refused<InputError>([&] { tube.section(); }, words);
+  };
+  const auto fact = [&](const char* name, const Json& value) {
+    return [=] { change_header(path, [&](Json& header) { header[name] = value; }); };
+  };
+  const auto column = [&]<typename Value>(const char* name, std::size_t at, Value value) {
+    return [=] {
+      std::vector<Value> values = values_of_column<Value>(path, name);
+      values.at(at) = value;
+      change_column(path, name, values);
+    };
+  };
+  check("'window': expected an object", fact("window", nullptr));
+  check("'cell': expected a number", fact("cell", nullptr));
+  check("cell", fact("cell", -1));
+  check("the rounding is no number above 0", fact("rounding", 0));
+  check("the chainage is not that of the poses", fact("poses", 1));
+  check("the bins are not ascending", fact("load_poses", 0));
+  check("is not what was asked", fact("motion", {1, 2}));
+  check("is not what was asked", fact("ignore_classes", {2}));
+  check("/bins/unknown is missing", fact("seen", true));
+  check("the chainage is not that", column("path/chainage", 0, 1e9));
+  check("the bins are not ascending", column("bins/number", 0, std::uint32_t{1000}));
+  check("other cells than those in the file", column("bins/cells", 0, ~std::uint64_t{0}));
+  check("outside the window", column("section/j", 0, std::int32_t{1 << 30}));
+  check("a pose that is not there", column("section/first_pose", 0, ~std::uint32_t{0}));
+  const auto j = values_of_column<std::int32_t>(path, "section/j");
+  const auto k = values_of_column<std::int32_t>(path, "section/k");
+  check("not ascending", [&] {
+    change_column(path, "section/j", std::vector(j.size(), j[0]));
+    change_column(path, "section/k", std::vector(k.size(), k[0]));
+  });
+  check("different lengths", [&] { change_column(path, "section/k", std::vector(1, k[0])); });
 }
 
 TEST_CASE("pivots give the load chords of the path, and poses stay those of the path") {

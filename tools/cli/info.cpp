@@ -64,7 +64,7 @@ ordered_json describe(const StoreReader& store) {
   std::uint64_t packed = 0;
   for (const std::uint32_t bytes : store.index().bytes) packed += bytes;
   ordered_json description{{"kind", "store"},
-                           {"version", kStoreVersion},
+                           {"version", kStoreKind.version},
                            {"points", m.point_count},
                            {"non_finite_points", m.points_without_place()},
                            {"layout", m.layout},

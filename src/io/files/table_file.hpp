@@ -139,6 +139,13 @@ class TableWriter {
   void write(TablePiece& piece);
   /// Writes any number of rows, as TablePiece::append() takes them, in whole pieces.
   void append(std::size_t rows, std::span<const ColumnBytes> columns);
+  /// Writes rows given as vectors or spans of the values of each column.
+  template <typename First, typename... Others>
+  void append_values(const First& first, const Others&... others) {
+    const std::array<ColumnBytes, 1 + sizeof...(Others)> bytes{std::as_bytes(std::span(first)),
+                                                               std::as_bytes(std::span(others))...};
+    append(std::size(first), bytes);
+  }
 
  private:
   friend class TableFileWriter;
@@ -173,8 +180,7 @@ class TableFileWriter {
   void add_column(const std::string& group, const std::string& name, const Values& values) {
     const std::span all(values);
     using Value = typename decltype(all)::value_type;
-    const ColumnBytes bytes = std::as_bytes(all);
-    add_table(group, {table_column<Value>(name)}, all.size()).append(all.size(), {&bytes, 1});
+    add_table(group, {table_column<Value>(name)}, all.size()).append_values(all);
   }
 
   /// Repeats a fact as an attribute, for readers that know HDF5 alone.

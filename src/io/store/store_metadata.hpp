@@ -3,23 +3,25 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "clearway/box.hpp"
 #include "clearway/progress.hpp"
 #include "clearway/vec3.hpp"
+#include "core/cloud/packed_cloud.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/messages/message_table.hpp"
-#include "io/files/xxh64.hpp"
+#include "io/files/table_file.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_dates.hpp"
 
 namespace clearway {
 
-inline constexpr std::uint32_t kStoreVersion = 2;
+class HeaderValues;
+
+inline constexpr TableFileKind kStoreKind{"clearway store", 3, "a store", "clearway convert",
+                                          "convert again"};
 
 /// An input file of a conversion, as recorded in the store.
 struct SourceFile {
@@ -152,67 +154,67 @@ inline std::vector<Message> store_warnings(const StoreMetadata& metadata) {
   return warnings;
 }
 
-// Names and tables that the store's writer and reader share (docs/design/store-format.md).
+/// What the header of a store keeps (docs/design/store-format.md): all of the metadata but what is
+/// a column, the origins, the cubes of withheld points and the path of a corridor. Reading throws
+/// InputError for facts that contradict each other.
+void keep_facts(HeaderValues& values, StoreMetadata& metadata);
+void keep_facts(HeaderValues& values, StoreCorridor& near);
 
-inline const std::string kStoreFormat = "clearway store";
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
-inline constexpr const char* kPointDatasets[4] = {"x", "y", "z", "source"};
 
-/// Attribute of a store whose heights were converted: StoreMetadata::height_unit.
-inline constexpr const char* kHeightUnit = "height_unit";
+/// The packed columns of a store, of which it may lack the last two.
+enum PointColumn : std::uint8_t { kX, kY, kZ, kSource, kClass, kOrigin };
+inline constexpr std::size_t kPointColumns = 6;
+inline constexpr const char* kPointColumnNames[kPointColumns] = {"x",      "y",     "z",
+                                                                 "source", "class", "origin"};
 
-/// Dataset of /sources; only where there are several files.
-inline constexpr const char* kSourcePoints = "points";
+/// The columns whose chunks have one index, and the group in which it lies.
+struct ChunkGroup {
+  const char* name;
+  std::size_t first, columns;
+};
+inline constexpr std::array<ChunkGroup, 3> kChunkGroups{
+    {{"cells", kX, 4}, {"classes", kClass, 1}, {"origins", kOrigin, 1}}};
 
-/// Attributes and dataset of withheld points; only where the inputs have some. The dataset is
-/// missing where the points were kept.
-inline constexpr const char* kWithheldPoints = "withheld_points";
-inline constexpr const char* kWithheldHash = "withheld_hash";
-inline constexpr const char* kWithheld = "withheld";
-
-/// Group and attributes of a corridor; only where points far from a path were left out.
-inline constexpr const char* kNearGroup = "near";
-inline constexpr const char* kNearPath = "path";
-inline constexpr const char* kNearWithin = "near_within";
-inline constexpr const char* kNearWhole = "near_whole";
-inline constexpr const char* kNearCounts = "near_counts";
-inline constexpr const char* kNearHash = "near_hash";
-
-inline std::span<const double> numbers_of(const std::vector<Vec3>& places) {
-  return {places.empty() ? nullptr : &places.front().x, 3 * places.size()};
-}
-
-/// The hash of what a store says of its corridor.
-inline std::uint64_t hash_of(const StoreCorridor& corridor) {
-  ColumnHashes hashes;
-  hashes.add(numbers_of(corridor.path));
-  hashes.add(std::array{corridor.within, corridor.whole.lo.x, corridor.whole.lo.y,
-                        corridor.whole.lo.z, corridor.whole.hi.x, corridor.whole.hi.y,
-                        corridor.whole.hi.z});
-  hashes.add(
-      std::array{corridor.left_out, corridor.unread, corridor.unread_bytes, corridor.passed_over});
-  return hashes.digest();
-}
-
-inline std::span<const std::int32_t> coordinates_of(const std::vector<MetreCube>& cubes) {
-  return {cubes.empty() ? nullptr : cubes.front().data(), 3 * cubes.size()};
-}
-
-/// The datasets of /cells, row-major. Each cell has four chunks: x, y, z, source.
-struct CellIndex {
-  std::vector<std::uint32_t> count;    // [cells]
-  std::vector<std::int32_t> box;       // [cells, 6]
-  std::vector<std::uint64_t> address;  // [cells, 4]
-  std::vector<std::uint32_t> bytes;    // [cells, 4]
-  std::vector<std::uint64_t> xxh64;    // [cells, 4]
+/// Addresses in the file, sizes and hashes of packed chunks, cell by cell, and for each cell column
+/// by column. Empty where a store lacks the columns.
+struct ChunkIndex {
+  std::vector<std::uint64_t> address;
+  std::vector<std::uint32_t> bytes;
+  std::vector<std::uint64_t> xxh64;
 };
 
-inline void add_index(const CellIndex& index, ColumnHashes& hashes) {
-  hashes.add(index.count);
-  hashes.add(index.box);
-  hashes.add(index.address);
-  hashes.add(index.bytes);
-  hashes.add(index.xxh64);
-}
+/// One packed chunk.
+struct StoredChunk {
+  std::uint64_t address;
+  std::uint32_t bytes;
+  std::uint64_t xxh64;
+};
+
+/// The index of each of kChunkGroups.
+struct ChunkIndexes : std::array<ChunkIndex, 3> {
+  StoredChunk of(std::size_t column, std::size_t cell) const {
+    const std::size_t group = column < kClass ? 0 : column - kSource;
+    const ChunkIndex& index = (*this)[group];
+    const std::size_t i = cell * kChunkGroups[group].columns + column - kChunkGroups[group].first;
+    return {index.address[i], index.bytes[i], index.xxh64[i]};
+  }
+};
+
+template <>
+struct NumbersOf<QuantumBox> {
+  using Number = std::int32_t;
+  static constexpr std::uint32_t kCount = 6;
+};
+template <>
+struct NumbersOf<BlockBox> {
+  using Number = std::uint16_t;
+  static constexpr std::uint32_t kCount = 6;
+};
+template <>
+struct NumbersOf<TopNode> {
+  using Number = std::uint32_t;
+  static constexpr std::uint32_t kCount = 3;
+};
 
 }  // namespace clearway

@@ -12,7 +12,6 @@
 #include "clearway/store.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "io/files/mapped_file.hpp"
-#include "io/store/point_columns.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -20,17 +19,11 @@ namespace clearway {
 /// Everything in a store except the chunks of its points.
 struct StoreIndex {
   StoreMetadata metadata;
-  CellIndex cells;
-  ColumnIndex classes;  ///< empty where the store has none
-  ColumnIndex origins;  ///< empty where the store has none
+  std::vector<Cell> cells;
+  ChunkIndexes chunks;
   std::vector<TopNode> top;
   std::vector<BlockBox> blocks;  ///< the same number of block boxes for every cell
 };
-
-/// Reads the index of a store, whose file has `file_bytes` bytes, and checks it against its hash.
-/// Throws InputError when the file is not a complete store of this version with an intact index, or
-/// when another tool rewrote it.
-StoreIndex read_store_index(const std::filesystem::path& path, std::uint64_t file_bytes);
 
 /// A store opened for reading: its index in memory, its points in a read-only map of the file.
 /// Throws InputError when the file is not an intact, complete store of this version, or when
@@ -41,7 +34,8 @@ class StoreReader final : public PackedCloud {
 
   const StoreMetadata& metadata() const { return index_.metadata; }
   const std::string& name() const { return map_.name(); }
-  const CellIndex& index() const { return index_.cells; }
+  /// Where the chunks of x, y, z and source are: four entries a cell.
+  const ChunkIndex& index() const { return index_.chunks[0]; }
   std::span<const TopNode> top_tree() const { return index_.top; }
 
   /// Hash of the cells' hashes and of everything else in the store but its points, so that two
@@ -67,7 +61,7 @@ class StoreReader final : public PackedCloud {
   std::uint64_t point_count() const override { return metadata().point_count; }
   std::uint32_t cell_points() const override { return metadata().cell_points; }
   const Quantisation& quantisation() const override { return metadata().quantisation; }
-  std::span<const Cell> cells() const override { return cells_; }
+  std::span<const Cell> cells() const override { return index_.cells; }
   std::span<const TreeNode> tree() const override { return tree_; }
   std::span<const BlockBox> blocks() const override { return index_.blocks; }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
@@ -115,36 +109,25 @@ class StoreReader final : public PackedCloud {
   void check_read() const;
 
  private:
-  std::span<const std::byte> checked_chunk(std::uint32_t cell, int dataset) const;
-  void check_hash(std::uint32_t cell, int dataset, std::span<const std::byte> bytes) const;
+  void check_hash(std::size_t column, std::uint32_t cell, std::span<const std::byte> bytes) const;
   template <typename Number>
-  PackedChunk<Number> chunk(std::uint32_t cell, const char* dataset,
+  PackedChunk<Number> chunk(std::size_t column, std::uint32_t cell,
                             std::span<const std::byte> bytes) const;
   template <typename Number>
-  PackedChunk<Number> column_chunk(const PointColumn& column, const ColumnIndex& index,
-                                   std::vector<std::uint8_t>& checked, std::uint32_t cell) const;
+  PackedChunk<Number> mapped(std::size_t column, std::uint32_t cell) const;
   std::array<PackedChunk<std::int32_t>, 3> mapped_coordinates(std::uint32_t cell) const;
-  PackedChunk<std::uint64_t> mapped_sources(std::uint32_t cell) const;
-  [[noreturn]] void refuse_damaged(std::uint32_t cell, const char* dataset,
-                                   std::uint64_t byte) const;
 
   MappedFile map_;
   const File::Stamp stamp_ = map_.file().stamp();
   StoreIndex index_;
-  std::vector<Cell> cells_;
   std::vector<TreeNode> tree_;
   mutable std::once_flag typical_block_found_;
   mutable double typical_block_ = 0;
-  /// Per cell: 1 once the hashes of its x, y and z in the map were found right.
-  mutable std::vector<std::uint8_t> checked_;
+  /// Per cell: 1 once the hashes in the map were found right, of x, y and z together, and of
+  /// source, class and origin; empty for columns that the store lacks.
+  mutable std::array<std::vector<std::uint8_t>, 4> checked_;
   /// Per cell: 1 once read_packed() read its coordinates from the file.
   mutable std::vector<std::uint8_t> read_;
-  /// Per cell: 1 once the hash of its source indices in the map was found right.
-  mutable std::vector<std::uint8_t> sources_checked_;
-  /// Per cell: 1 once the hash of its classes in the map was found right; empty without classes.
-  mutable std::vector<std::uint8_t> classes_checked_;
-  /// Per cell: 1 once the hash of its origins in the map was found right; empty without origins.
-  mutable std::vector<std::uint8_t> origins_checked_;
 
   /// The bytes of one column that were handed out.
   struct Counter {

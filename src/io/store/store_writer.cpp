@@ -20,10 +20,9 @@
 #include "core/cloud/packed_cloud.hpp"
 #include "io/files/file.hpp"
 #include "io/files/hdf5.hpp"
-#include "io/files/kept_warnings.hpp"
+#include "io/files/header_values.hpp"
 #include "io/files/parallel_loop.hpp"
 #include "io/files/xxh64.hpp"
-#include "io/store/point_columns.hpp"
 #include "io/store/store_metadata.hpp"
 
 namespace clearway {
@@ -117,277 +116,180 @@ void GrowingFile::trim() {
 
 /// Creates a dataset of points: [cells, cell_points], in chunks of [1, cell_points], packed by
 /// scale-offset.
-template <typename Number>
-hdf5::Id create_packed(const hdf5::Id& group, const char* name, std::uint64_t cells,
-                       std::uint32_t cell_points) {
+hdf5::Id create_packed(const hdf5::Id& file, const std::string& group, std::size_t column,
+                       std::uint64_t cells, std::uint32_t cell_points) {
+  if (H5Lexists(file.get(), group.c_str(), H5P_DEFAULT) <= 0) hdf5::create_group(file, group);
+  const std::array types{H5T_STD_I32LE, H5T_STD_I32LE, H5T_STD_I32LE,
+                         H5T_STD_U64LE, H5T_STD_U8LE,  H5T_STD_U32LE};
   const std::array<hsize_t, 2> size{cells, cell_points};
   const std::array<hsize_t, 2> chunk{1, cell_points};
   const hdf5::Id space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, "HDF5 dataspace");
   const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "HDF5 property list");
-  const hid_t type = hdf5::file_type<Number>();
   hdf5::check(H5Pset_obj_track_times(list.get(), false), "HDF5 object times");
   if (cells > 0) {
     hdf5::check(H5Pset_chunk(list.get(), 2, chunk.data()), "HDF5 chunk size");
-    hdf5::check(H5Pset_fill_value(list.get(), type, nullptr), "HDF5 undefined fill value");
+    hdf5::check(H5Pset_fill_value(list.get(), types[column], nullptr), "HDF5 undefined fill value");
     hdf5::check(H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER), "HDF5 fill time");
     hdf5::check(H5Pset_scaleoffset(list.get(), H5Z_SO_INT, H5Z_SO_INT_MINBITS_DEFAULT),
                 "HDF5 scale-offset");
   }
-  return {H5Dcreate2(group.get(), name, type, space.get(), H5P_DEFAULT, list.get(), H5P_DEFAULT),
-          H5Dclose, std::string("create dataset ") + name};
+  const std::string path = group + "/" + kPointColumnNames[column];
+  return {H5Dcreate2(file.get(), path.c_str(), types[column], space.get(), H5P_DEFAULT, list.get(),
+                     H5P_DEFAULT),
+          H5Dclose, "create dataset " + path};
 }
-
-void write_withheld(const hdf5::Id& file, const StoreWithheld& withheld) {
-  hdf5::write_number(file, kWithheldPoints, withheld.points);
-  if (withheld.kept) return;
-  ColumnHashes hashes;
-  hashes.add(std::array{withheld.points});
-  hashes.add(coordinates_of(withheld.cubes));
-  hdf5::write_dataset<std::int32_t>(file, kWithheld, coordinates_of(withheld.cubes), 3);
-  hdf5::write_number(file, kWithheldHash, hashes.digest());
-}
-
-void write_corridor(const hdf5::Id& file, const StoreCorridor& near) {
-  const Box& whole = near.whole;
-  const std::array box{whole.lo.x, whole.lo.y, whole.lo.z, whole.hi.x, whole.hi.y, whole.hi.z};
-  const std::array counts{near.left_out, near.unread, near.unread_bytes, near.passed_over};
-  hdf5::write_number(file, kNearWithin, near.within);
-  hdf5::write_attribute<double>(file, kNearWhole, box);
-  hdf5::write_attribute<std::uint64_t>(file, kNearCounts, counts);
-  hdf5::write_number(file, kNearHash, hash_of(near));
-  const hdf5::Id group = hdf5::create_group(file, kNearGroup);
-  hdf5::write_dataset<double>(group, kNearPath, numbers_of(near.path), 3);
-}
-
-/// Writes the attributes and /sources, whose datasets are the first of `hashes`.
-void write_metadata(const hdf5::Id& file, const StoreMetadata& metadata, ColumnHashes& hashes) {
-  hdf5::write_attribute(file, "format", kStoreFormat);
-  hdf5::write_number(file, "version", kStoreVersion);
-  hdf5::write_number(file, "point_count", metadata.point_count);
-  hdf5::write_number(file, "input_points", metadata.input_points);
-  hdf5::write_number(file, "cell_points", metadata.cell_points);
-  hdf5::write_number(file, "points_hash", metadata.points_hash);
-  hdf5::write_attribute<double>(file, "scale", metadata.quantisation.scale);
-  hdf5::write_attribute<double>(file, "offset", metadata.quantisation.offset);
-  hdf5::write_attribute<double>(file, "steps", metadata.steps);
-  hdf5::write_attribute(file, "layout", metadata.layout);
-  hdf5::write_attribute(file, "options", metadata.options);
-  hdf5::write_attribute(file, "length_unit", to_string(metadata.unit));
-  hdf5::write_attribute(file, "crs_wkt", metadata.crs_wkt);
-  if (metadata.height_unit != 0) hdf5::write_number(file, kHeightUnit, metadata.height_unit);
-
-  if (metadata.withheld) write_withheld(file, *metadata.withheld);
-  if (metadata.near) write_corridor(file, *metadata.near);
-  write_scan_dates(file, metadata.dates);
-  if (!metadata.warnings.empty()) write_warnings(file, metadata.warnings);
-
-  std::vector<std::uint8_t> names;
-  std::vector<std::uint64_t> bytes, contents;
-  for (const SourceFile& source : metadata.sources) {
-    names.insert(names.end(), source.name.begin(), source.name.end());
-    names.push_back(0);
-    bytes.push_back(source.bytes);
-    contents.push_back(source.xxh64);
-  }
-  const hdf5::Id group = hdf5::create_group(file, "sources");
-  hdf5::write_dataset<std::uint8_t>(group, "names", names);
-  hdf5::write_dataset<std::uint64_t>(group, "bytes", bytes);
-  hdf5::write_dataset<std::uint64_t>(group, "xxh64", contents);
-  if (!metadata.source_points.empty()) {
-    hdf5::write_dataset<std::uint64_t>(group, kSourcePoints, metadata.source_points);
-  }
-  hashes.add(names);
-  hashes.add(bytes);
-  hashes.add(contents);
-}
-
-/// Reserves room for exactly this many cells.
-void reserve(CellIndex& index, std::uint64_t cells) {
-  index.count.reserve(cells);
-  index.box.reserve(6 * cells);
-  index.address.reserve(4 * cells);
-  index.bytes.reserve(4 * cells);
-  index.xxh64.reserve(4 * cells);
-}
-
-/// A column of points that this store has.
-struct Column {
-  PointColumn of;
-  hdf5::Id dataset;
-  ColumnIndex index;
-  const PackedColumn PackedCell::*packed;  ///< the part of a packed cell that it writes
-
-  const PackedColumn& of_cell(const PackedCell& cell) const { return cell.*packed; }
-};
 
 }  // namespace
 
 struct StoreWriter::State {
-  std::filesystem::path path;
-  StoreMetadata metadata;
-  std::uint64_t promised_cells;
-  hdf5::Id file;
-  std::array<hdf5::Id, 4> points;
-  CellIndex index;
-  std::vector<Column> columns;
-  File blocks;  ///< spools the rows of /blocks/box, which are too many to keep in memory
-  std::uint64_t block_rows = 0;
-  std::optional<GrowingFile> growth;
-  ColumnHashes hashes;  ///< hashes of all datasets except those of /points
-
-  std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
-
-  void spool_blocks(std::span<const BlockBox> boxes) {
-    static_assert(sizeof(BlockBox) == 6 * sizeof(std::uint16_t));
-    std::vector<BlockBox> rows(boxes.begin(), boxes.end());
-    rows.resize(blocks_per_cell());
-    blocks.write(std::as_bytes(std::span(rows)));
-    block_rows += rows.size();
+  State(const std::filesystem::path& path_of_file, const StoreMetadata& facts, std::uint64_t cells)
+      : path(path_of_file),
+        metadata(facts),
+        promised_cells(cells),
+        file(path, kStoreKind),
+        blocks(File::create_temporary(folder_of(path))) {
+    hdf5::naming(path.string(), [&] {
+      growth.emplace(path);
+      count.reserve(cells);
+      box.reserve(cells);
+      for (std::size_t group = 0; group < kChunkGroups.size(); ++group) {
+        const auto& [name, first, columns] = kChunkGroups[group];
+        if (!has(first)) continue;
+        for (std::size_t column = first; column < first + columns; ++column) {
+          datasets[column] = create_packed(file.file(), group == 0 ? "points" : name, column, cells,
+                                           facts.cell_points);
+        }
+        chunks[group].address.reserve(columns * cells);
+        chunks[group].bytes.reserve(columns * cells);
+        chunks[group].xxh64.reserve(columns * cells);
+      }
+    });
   }
 
-  void write_blocks() {
-    constexpr std::uint64_t kPieceRows = 1 << 16;
-    const hdf5::Id group = hdf5::create_group(file, "blocks");
-    hdf5::Rows<std::uint16_t> dataset(group, "box", block_rows, 6);
-    std::vector<std::uint16_t> piece;
-    Xxh64Stream hash;
-    for (std::uint64_t row = 0; row < block_rows; row += kPieceRows) {
-      piece.resize(6 * std::min(kPieceRows, block_rows - row));
-      blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
-      dataset.write(row, piece);
-      hash.update(std::as_bytes(std::span(piece)));
-    }
-    dataset.close();
-    hashes.add_digest(hash.digest());
+  bool has(std::size_t column) const {
+    return column < kClass ||
+           (column == kClass ? metadata.classes.has_value() : metadata.origins.has_value());
   }
 
   /// Writes a packed chunk at the end of the file and returns its address.
   std::uint64_t write_chunk(const hdf5::Id& dataset, std::uint64_t cell,
                             std::span<const std::byte> bytes) {
-    const hid_t id = dataset.get();
     haddr_t address = 0;
-    hdf5::check(H5Fget_eoa(file.get(), &address), path.string() + ": HDF5 end of file");
+    hdf5::check(H5Fget_eoa(file.file().get(), &address), "HDF5 end of file");
     const std::array<hsize_t, 2> at{cell, 0};
-    hdf5::check(H5Dwrite_chunk(id, H5P_DEFAULT, 0, at.data(), bytes.size(), bytes.data()),
-                path.string() + ": cannot write");
+    hdf5::check(
+        H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, 0, at.data(), bytes.size(), bytes.data()),
+        "cannot write");
     if (cell == 0) {  // HDF5 also allocates the index of chunks, perhaps before the chunk
       unsigned mask = 0;
       hsize_t size = 0;
-      hdf5::check(H5Dget_chunk_info_by_coord(id, at.data(), &mask, &address, &size),
-                  path.string() + ": HDF5 address of a chunk");
+      hdf5::check(H5Dget_chunk_info_by_coord(dataset.get(), at.data(), &mask, &address, &size),
+                  "HDF5 address of a chunk");
     }
     growth->written(address + bytes.size());
     return address;
   }
 
-  template <typename Number>
-  void add_column(const PointColumn& of, PackedColumn PackedCell::*packed) {
-    const hdf5::Id group = hdf5::create_group(file, of.group);
-    columns.push_back(
-        {of,
-         create_packed<Number>(group, of.dataset, promised_cells, metadata.cell_points),
-         {},
-         packed});
-    columns.back().index.reserve(promised_cells);
-  }
-
-  void write_to(Column& column, const PackedCell& packed, std::uint64_t cell) {
-    const PackedColumn& values = column.of_cell(packed);
-    column.index.address.push_back(write_chunk(column.dataset, cell, values.bytes));
-    column.index.bytes.push_back(static_cast<std::uint32_t>(values.bytes.size()));
-    column.index.xxh64.push_back(values.xxh64);
-  }
-
-  void write_columns() {
-    for (Column& column : columns) {
-      if (column.of.group == kClassColumn.group) {
-        write_classes(file, *metadata.classes, column.index);
-      } else {
-        write_origins(file, *metadata.origins, column.index);
+  void append(const PackedCell& packed) {
+    if (count.size() >= promised_cells) throw std::logic_error("more cells than promised");
+    for (std::size_t group = 0; group < kChunkGroups.size(); ++group) {
+      const auto& [name, first, columns] = kChunkGroups[group];
+      for (std::size_t column = first; column < first + columns && has(column); ++column) {
+        const std::vector<std::byte>& chunk = packed.chunks[column];
+        chunks[group].address.push_back(write_chunk(datasets[column], count.size(), chunk));
+        chunks[group].bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
+        chunks[group].xxh64.push_back(packed.xxh64[column]);
       }
-      column.dataset.close(path.string() + ": cannot write");
+    }
+    count.push_back(packed.cell.count);
+    box.push_back(packed.cell.box);
+    std::vector<BlockBox> rows = packed.blocks;
+    rows.resize(blocks_per_cell());
+    blocks.write(std::as_bytes(std::span(rows)));
+  }
+
+  std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
+
+  void write_blocks() {
+    const std::uint64_t rows = promised_cells * blocks_per_cell();
+    TableWriter& table = file.add_table("blocks", {table_column<BlockBox>("box")}, rows);
+    std::vector<BlockBox> piece;
+    for (std::uint64_t row = 0; row < rows; row += piece.size()) {
+      piece.resize(std::min<std::uint64_t>(kPieceRows, rows - row));
+      blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
+      table.append_values(piece);
     }
   }
 
-  struct WrittenChunk {
-    std::size_t cell;
-    std::uint64_t address;
-    std::uint32_t bytes;
-    std::uint64_t hash;
-  };
-
-  /// The written chunks by number: x, y, z and source of each cell, and after all of these the
-  /// chunks of one column after the other.
-  WrittenChunk written(std::size_t chunk) const {
-    const std::size_t points_end = index.bytes.size();
-    if (chunk < points_end) {
-      return {chunk / 4, index.address[chunk], index.bytes[chunk], index.xxh64[chunk]};
+  void write_index(const std::vector<TopNode>& tree) {
+    if (count.size() != promised_cells) throw std::logic_error("fewer cells than promised");
+    const auto& [address, bytes, xxh64] = chunks[0];
+    file.add_table("cells",
+                   {table_column<std::uint32_t>("count"), table_column<QuantumBox>("box"),
+                    table_column<std::array<std::uint64_t, 4>>("address"),
+                    table_column<std::array<std::uint32_t, 4>>("bytes"),
+                    table_column<std::array<std::uint64_t, 4>>("xxh64")},
+                   promised_cells)
+        .append_values(count, box, address, bytes, xxh64);
+    write_blocks();
+    file.add_column("tree", "nodes", tree);
+    for (std::size_t group = 1; group < kChunkGroups.size(); ++group) {
+      if (!has(kChunkGroups[group].first)) continue;
+      file.add_table(kChunkGroups[group].name,
+                     {table_column<std::uint64_t>("address"), table_column<std::uint32_t>("bytes"),
+                      table_column<std::uint64_t>("xxh64")},
+                     promised_cells)
+          .append_values(chunks[group].address, chunks[group].bytes, chunks[group].xxh64);
     }
-    const std::size_t cells = points_end / 4;
-    const std::size_t cell = (chunk - points_end) % cells;
-    const ColumnIndex& of = columns[(chunk - points_end) / cells].index;
-    return {cell, of.address[cell], of.bytes[cell], of.xxh64[cell]};
+    if (metadata.origins) file.add_column("origins", "quanta", metadata.origins->quanta);
+    if (metadata.withheld && !metadata.withheld->kept) {
+      file.add_column("withheld", "cube", metadata.withheld->cubes);
+    }
+    if (metadata.near) file.add_column("near", "path", metadata.near->path);
   }
 
-  void confirm_address(const File& reread, const WrittenChunk& chunk) const {
+  void finish(const std::vector<TopNode>& tree) {
+    write_index(tree);
+    hdf5::naming(path.string(), [&] {
+      for (hdf5::Id& dataset : datasets) dataset.close("cannot write");
+    });
+    file.note("scale", std::span(metadata.quantisation.scale));
+    file.note("offset", std::span(metadata.quantisation.offset));
+    file.finish(as_header(metadata));
+    growth->trim();
+    growth.reset();
+  }
+
+  void confirm_address(const File& reread, std::size_t column, std::size_t cell) const {
+    const StoredChunk chunk = chunks.of(column, cell);
     const auto bytes = std::make_unique_for_overwrite<std::byte[]>(chunk.bytes);
     const std::span<std::byte> read(bytes.get(), chunk.bytes);
     reread.read_at(chunk.address, read);
-    if (xxh64(read) == chunk.hash) return;
-    throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(chunk.cell) +
+    if (clearway::xxh64(read) == chunk.xxh64) return;
+    throw ResourceError(path.string() + ": a chunk of cell " + std::to_string(cell) +
                         " read back differs from what was written at byte " +
                         std::to_string(chunk.address));
   }
 
-  void confirm_addresses() const {
-    const File reread = File::open_for_reading(path);
-    for_each_parallel(index.bytes.size() / 4 * (4 + columns.size()),
-                      [&](std::size_t chunk) { confirm_address(reread, written(chunk)); });
-  }
+  std::filesystem::path path;
+  StoreMetadata metadata;
+  std::uint64_t promised_cells;
+  TableFileWriter file;
+  std::array<hdf5::Id, kPointColumns> datasets;
+  std::vector<std::uint32_t> count;  ///< of each cell
+  std::vector<QuantumBox> box;
+  ChunkIndexes chunks;
+  File blocks;  ///< spools the rows of /blocks/box, which are too many to keep in memory
+  std::optional<GrowingFile> growth;
 };
 
 void hash_chunks(PackedCell& packed) {
-  for (std::size_t i = 0; i < packed.chunks.size(); ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
-  for (PackedColumn* column : {&packed.classes, &packed.origins}) {
-    if (!column->bytes.empty()) column->xxh64 = xxh64(column->bytes);
-  }
+  for (std::size_t i = 0; i < kPointColumns; ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
 }
 
 StoreWriter::StoreWriter(const std::filesystem::path& path, const StoreMetadata& metadata,
                          std::uint64_t cells)
-    : state_(new State{.path = path,
-                       .metadata = metadata,
-                       .promised_cells = cells,
-                       .file = {},
-                       .points = {},
-                       .index = {},
-                       .columns = {},
-                       .blocks = File::create_temporary(folder_of(path)),
-                       .growth = {},
-                       .hashes = {}}) {
-  hdf5::naming(path.string(), [&] { create(cells); });
-}
-
-void StoreWriter::create(std::uint64_t cells) {
-  const StoreMetadata& metadata = state_->metadata;
-  reserve(state_->index, cells);
-  state_->file = hdf5::create_file(state_->path);
-  state_->growth.emplace(state_->path);
-  write_metadata(state_->file, metadata, state_->hashes);
-  const hdf5::Id group = hdf5::create_group(state_->file, "points");
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    state_->points[axis] =
-        create_packed<std::int32_t>(group, kPointDatasets[axis], cells, metadata.cell_points);
-  }
-  state_->points[3] =
-      create_packed<std::uint64_t>(group, kPointDatasets[3], cells, metadata.cell_points);
-  if (metadata.classes) {
-    state_->add_column<std::uint8_t>(kClassColumn, &PackedCell::classes);
-  }
-  if (metadata.origins) {
-    state_->add_column<std::uint32_t>(kOriginColumn, &PackedCell::origins);
-  }
-}
+    : state_(std::make_unique<State>(path, metadata, cells)) {}
 
 StoreWriter::~StoreWriter() {
   const hdf5::QuietScope quiet;
@@ -395,60 +297,18 @@ StoreWriter::~StoreWriter() {
 }
 
 void StoreWriter::append(const PackedCell& packed) {
-  const hdf5::QuietScope quiet;
-  State& state = *state_;
-  CellIndex& index = state.index;
-  const std::uint64_t cell = index.count.size();
-  if (cell >= state.promised_cells) throw std::logic_error("more cells than promised");
-  for (int i = 0; i < 4; ++i) {
-    const std::vector<std::byte>& chunk = packed.chunks[static_cast<std::size_t>(i)];
-    index.address.push_back(
-        state.write_chunk(state.points[static_cast<std::size_t>(i)], cell, chunk));
-    index.bytes.push_back(static_cast<std::uint32_t>(chunk.size()));
-    index.xxh64.push_back(packed.xxh64[static_cast<std::size_t>(i)]);
-  }
-  for (Column& column : state.columns) state.write_to(column, packed, cell);
-  index.count.push_back(packed.cell.count);
-  index.box.insert(index.box.end(), packed.cell.box.lo, packed.cell.box.lo + 3);
-  index.box.insert(index.box.end(), packed.cell.box.hi, packed.cell.box.hi + 3);
-  state.spool_blocks(packed.blocks);
+  hdf5::naming(state_->path.string(), [&] { state_->append(packed); });
 }
 
-void StoreWriter::finish(const std::vector<TopNode>& tree) {
-  hdf5::naming(state_->path.string(), [&] { write_index(tree); });
-}
+void StoreWriter::finish(const std::vector<TopNode>& tree) { state_->finish(tree); }
 
-void StoreWriter::confirm() const { state_->confirm_addresses(); }
-
-void StoreWriter::write_index(const std::vector<TopNode>& tree) {
-  State& state = *state_;
-  if (state.index.count.size() != state.promised_cells) {
-    throw std::logic_error("fewer cells than promised");
-  }
-  std::vector<std::uint32_t> nodes;
-  for (const TopNode& node : tree) {
-    nodes.insert(nodes.end(), {node.first_cell, node.cell_count, node.right});
-  }
-  {
-    const hdf5::Id cells = hdf5::create_group(state.file, "cells");
-    hdf5::write_dataset<std::uint32_t>(cells, "count", state.index.count);
-    hdf5::write_dataset<std::int32_t>(cells, "box", state.index.box, 6);
-    hdf5::write_dataset<std::uint64_t>(cells, "address", state.index.address, 4);
-    hdf5::write_dataset<std::uint32_t>(cells, "bytes", state.index.bytes, 4);
-    hdf5::write_dataset<std::uint64_t>(cells, "xxh64", state.index.xxh64, 4);
-    add_index(state.index, state.hashes);
-    state.write_blocks();
-    const hdf5::Id group = hdf5::create_group(state.file, "tree");
-    hdf5::write_dataset<std::uint32_t>(group, "nodes", nodes, 3);
-    state.hashes.add(nodes);
-  }
-  state.write_columns();
-  hdf5::write_number(state.file, "index_hash", state.hashes.digest());
-  hdf5::write_number(state.file, "complete", std::uint32_t{1});
-  for (hdf5::Id& dataset : state.points) dataset.close(state.path.string() + ": cannot write");
-  state.file.close(state.path.string() + ": cannot write");
-  state.growth->trim();
-  state.growth.reset();
+void StoreWriter::confirm() const {
+  const File reread = File::open_for_reading(state_->path);
+  for_each_parallel(state_->promised_cells, [&](std::size_t cell) {
+    for (std::size_t column = 0; column < kPointColumns; ++column) {
+      if (state_->has(column)) state_->confirm_address(reread, column, cell);
+    }
+  });
 }
 
 }  // namespace clearway

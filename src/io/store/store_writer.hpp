@@ -12,21 +12,13 @@
 
 namespace clearway {
 
-/// The packed values of a cell in a column of points that only some stores have; empty where the
-/// store does not have the column.
-struct PackedColumn {
-  std::vector<std::byte> bytes;
-  std::uint64_t xxh64 = 0;
-};
-
 /// One packed cell, which the writer puts into the file as it is.
 struct PackedCell {
   Cell cell;
   std::vector<BlockBox> blocks;  ///< one for each block that has points
-  /// Packed x, y, z and source, each of cell_points values.
-  std::array<std::vector<std::byte>, 4> chunks;
-  std::array<std::uint64_t, 4> xxh64{};  ///< hashes of the chunks, see hash_chunks()
-  PackedColumn classes = {}, origins = {};
+  /// Packed values of each column, cell_points of them; empty where the store lacks the column
+  std::array<std::vector<std::byte>, kPointColumns> chunks;
+  std::array<std::uint64_t, kPointColumns> xxh64{};  ///< hashes of the chunks, see hash_chunks()
 };
 
 /// Fills in the hashes of the chunks. Called by the threads that pack, because the writer has only
@@ -51,9 +43,6 @@ class StoreWriter {
   void confirm() const;
 
  private:
-  void create(std::uint64_t cells);
-  void write_index(const std::vector<TopNode>& tree);
-
   struct State;
   std::unique_ptr<State> state_;
 };

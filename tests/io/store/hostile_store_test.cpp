@@ -5,7 +5,7 @@
 
 #include "support/bytes/las_bytes.hpp"
 #include "support/catch.hpp"
-#include "support/change_hdf5.hpp"
+#include "support/change_header.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/leaks_of_hdf5.hpp"
@@ -186,14 +186,22 @@ TEST_CASE("a store that HDF5 can read, but Clearway did not write, is refused wi
   for (const hsize_t rows : {hsize_t{1} << 20, hsize_t{1} << 40, (hsize_t{1} << 62) + 1}) {
     check("room", empty_dataset("cells/count", H5T_STD_U32LE, rows, rows, chunks_of(1024)));
   }
-  check("fletcher32", empty_dataset("cells/count", H5T_STD_U32LE, 5, 5, chunks_of(5, false)));
+  const hsize_t cells = StoreReader(store.options.output).cells().size();
+  check("not where it was written",
+        empty_dataset("classes/bytes", H5T_STD_U32LE, cells, cells, chunks_of(cells, false)));
   const hsize_t large = hsize_t{1} << 28;
-  check("", empty_dataset("sources/bytes", H5T_STD_U64LE, 2, large, chunks_of(large)));
-  check("", empty_dataset("sources/bytes", H5T_STD_U64LE, 2, 2, [](hid_t list) {
+  check("chunks of rows",
+        empty_dataset("classes/bytes", H5T_STD_U32LE, cells, large, chunks_of(large)));
+  check("chunks of rows",
+        empty_dataset("classes/bytes", H5T_STD_U32LE, cells, cells, [](hid_t list) {
           hdf5::check(H5Pset_external(list, "/etc/passwd", 0, 16), "external");
         }));
-  for (const char* name : {"cells", "cells/count", "points/x", "sources", "blocks/box"}) {
+  for (const char* name : {"cells", "cells/count", "points/x", "header", "blocks/box"}) {
     for (const bool external : {false, true}) check("found a link", link_instead(name, external));
+  }
+  for (const char* column : {"classes/address", "origins/xxh64"}) {
+    check("other cells than it counts",
+          [&](const auto& path) { change_column(path, column, std::vector<std::uint64_t>{}); });
   }
   check("superblock of version 0", other_bytes([](std::string bytes) {
           bytes[8] = 0;

@@ -3,6 +3,7 @@
 Usage: read_store_with_h5py.py CLEARWAY_PROGRAM
 """
 
+import json
 import pathlib
 import shutil
 import struct
@@ -46,8 +47,9 @@ def clouds(folder):
 
 def stored_points(store):
     """Coordinates in the order of the source indices."""
-    count, size = store["cells/count"][:], store.attrs["cell_points"]
-    assert count.sum() == store.attrs["point_count"]
+    facts = json.loads(bytes(store["header"][:]))
+    count, size = store["cells/count"][:], facts["cell_points"]
+    assert count.sum() == facts["point_count"]
     assert all(store["points/" + name].shape == (len(count), size) for name in "xyz")
     if len(count) == 0:
         return numpy.zeros((0, 3), int)

@@ -3,7 +3,7 @@
 
 #include "io/store/store_writer.hpp"
 #include "support/catch.hpp"
-#include "support/change_hdf5.hpp"
+#include "support/change_header.hpp"
 #include "support/clouds.hpp"
 #include "support/compare.hpp"
 #include "support/result_fixture.hpp"
@@ -97,7 +97,7 @@ TEST_CASE("a file that is no store, or no whole one, is refused") {
                                     {"empty.h5", "not an HDF5 file"},
                                     {"result.h5", "not a store"},
                                     {"other.h5", "not a store"},
-                                    {"begun.h5", "unfinished"}}) {
+                                    {"begun.h5", "not complete ... convert again"}}) {
     check_says(refusal_of_store(folder / file), words);
   }
   CHECK_THROWS_AS(StoreReader(folder / "none.h5"), ResourceError);
@@ -141,16 +141,81 @@ TEST_CASE("a store of several scans knows how many points each has, as that of o
   const StoreMetadata one = StoreReader(ReadStore(100).options.output).metadata();
   CHECK(one.source_points.empty());
   check_equal(one.points_of_source(0), 100u);
-  // Version 0.1.0 wrote no such dataset.
-  remove_link(scans.options.output, "/sources/points");
+  change_header(scans.options.output, [](Json& header) { header.erase("source_points"); });
   CHECK_FALSE(StoreReader(scans.options.output).metadata().points_of_source(0));
 }
 
-TEST_CASE("counts of points that do not add up are refused") {
-  using Counts = std::vector<std::uint64_t>;
+TEST_CASE("a scan whose name is not UTF-8 is known again") {
+  Conversion scan;
+  scan.add_las(
+      "f\xfc"
+      "nf.las",
+      cube_cloud(100, -4000, 4000, 3));
+  scan.convert();
+  check_equal(StoreReader(scan.options.output).metadata().sources[0].name, "f\xef\xbf\xbdnf.las");
+  CHECK(is_converted_by(scan.options));
+}
+
+TEST_CASE("facts of a store that contradict each other are refused, though their hash is right") {
   const TwoScans scans;
+  const auto path = scans.options.output;
+  const std::string bytes = bytes_of(path);
+  using Counts = std::vector<std::uint64_t>;
+  const auto check = [&](const char* fact, const Json& value) {
+    INFO(fact << ": " << value);
+    put_bytes(path, bytes);
+    change_header(path, [&](Json& header) { header[fact] = value; });
+    check_says(refusal_of_store(path), std::string(fact));
+  };
   for (const Counts& counts : {Counts{100, 251}, {350}, {0, 0}, {351, ~0ull}}) {
-    replace_dataset(scans.options.output, "/sources/points", counts);
-    check_says(refusal_of_store(scans.options.output), "points'");
+    check("source_points", counts);
   }
+  check("scale", {1, 0, 1});
+  check("scale", {1, nullptr, 1});
+  check("offset", {1, 2});
+  check("steps", {0, 0, -1});
+  check("cell_points", 0);
+  check("cell_points", (1 << 20) + 1);
+  check("cell_points", -1);
+  check("input_points", 349);
+  check("points_hash", 1.5);
+  check("sources", "a.las");
+  check("warnings", nullptr);
+  check("dates", {{"first", "2024-05-31"}, {"last", "yesterday"}});
+  check("withheld", {{"points", 1}, {"kept", false}});
+  check("near", {{"within", -1}});
+  check("classes", {{"hash", 1}, {"points", Counts(256, 1)}});
+  check("origins", {{"hash", 1}, {"rest_on", {{{"what", "poses"}, {"points", 351}}}}});
+  for (const char* fact : {"point_count", "layout", "options", "crs_wkt", "length_unit"}) {
+    put_bytes(path, bytes);
+    change_header(path, [&](Json& header) { header.erase(fact); });
+    check_says(refusal_of_store(path), std::string(fact));
+  }
+}
+
+TEST_CASE("an index that contradicts itself is refused, though its hashes are right") {
+  const ReadStore store(300);
+  const auto path = store.options.output;
+  const std::string bytes = bytes_of(path);
+  const auto check = [&]<typename Value>(const std::string& words, const char* column,
+                                         std::size_t at, Value value) {
+    INFO(words);
+    put_bytes(path, bytes);
+    std::vector<Value> values = values_of_column<Value>(path, column);
+    values.at(at) = value;
+    change_column(path, column, values);
+    check_says(refusal_of_store(path), words);
+  };
+  check("cell 1 has 0 points", "cells/count", 1, std::uint32_t{0});
+  check("cell 1 has 65 points", "cells/count", 1, std::uint32_t{65});
+  check("its cells hold 299 points, expected 300", "cells/count", 0, std::uint32_t{63});
+  check("cell 2 has an inverted box", "cells/box", 12, std::int32_t{1 << 30});
+  check("past the end of the file", "cells/address", 7, std::uint64_t{1} << 40);
+  check("past the end of the file", "cells/bytes", 7, ~std::uint32_t{0});
+  check("Another tool", "cells/address", 0, std::uint64_t{64});
+  put_bytes(path, bytes);
+  auto sizes = values_of_column<std::uint32_t>(path, "cells/bytes");
+  sizes.resize(sizes.size() - 4);
+  change_column(path, "cells/bytes", sizes);
+  check_says(refusal_of_store(path), "other cells than it counts");
 }

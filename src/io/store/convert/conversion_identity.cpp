@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/store/convert/source_description.hpp"
 
 namespace clearway {
@@ -80,7 +81,7 @@ std::string store_options(const ConversionOptions& options) {
     std::ranges::replace(value, '\n', ' ');
     text.append(key).append(kIs).append(value).append("\n");
   }
-  return text;
+  return valid_utf8(text);
 }
 
 std::string difference_of_options(const std::string& found, const std::string& wanted) {

@@ -10,6 +10,7 @@
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/store/convert/source_description.hpp"
 
 namespace clearway {
 
@@ -29,7 +30,7 @@ void FileHashes::add(std::size_t file, const PieceBytes& piece) {
 
 void FileHashes::pass_over(std::size_t file) {
   const std::uint64_t bytes = std::filesystem::file_size(files_[file]);
-  found_[file] = {files_[file].filename().string(), bytes, Xxh64Stream().digest()};
+  found_[file] = {name_in_store(files_[file]), bytes, Xxh64Stream().digest()};
 }
 
 std::vector<std::optional<SourceFile>> FileHashes::finish() {
@@ -50,7 +51,7 @@ void FileHashes::read_until(std::uint64_t position) {
 
 void FileHashes::end_file() {
   read_until(file_->size_bytes());
-  found_[number_] = {files_[number_].filename().string(), position_, hash_->digest()};
+  found_[number_] = {name_in_store(files_[number_]), position_, hash_->digest()};
   file_.reset();
   hash_.reset();
 }

@@ -89,12 +89,12 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   for (std::size_t axis = 0; axis < 3; ++axis) {
     pack([axis](const BucketPoint& p) { return p.q[axis]; }, cell.chunks[axis]);
   }
-  pack([&](const BucketPoint& p) { return unit.source(p); }, cell.chunks[3]);
+  pack([&](const BucketPoint& p) { return unit.source(p); }, cell.chunks[kSource]);
   if (has_classes) {
-    pack([&](const BucketPoint& p) { return unit.point_class(p); }, cell.classes.bytes);
+    pack([&](const BucketPoint& p) { return unit.point_class(p); }, cell.chunks[kClass]);
   }
   if (unit.has_origins()) {
-    pack([&](const BucketPoint& p) { return unit.origin(p); }, cell.origins.bytes);
+    pack([&](const BucketPoint& p) { return unit.origin(p); }, cell.chunks[kOrigin]);
   }
   hash_chunks(cell);
   return cell;

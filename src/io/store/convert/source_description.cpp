@@ -7,10 +7,15 @@
 #include "core/util/format.hpp"
 #include "core/util/threads.hpp"
 #include "io/files/file.hpp"
+#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/scans/point_reader.hpp"
 
 namespace clearway {
+
+std::string name_in_store(const std::filesystem::path& path) {
+  return valid_utf8(path.filename().string());
+}
 
 SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
                     const Progress& progress) {
@@ -25,14 +30,14 @@ SourceFile describe(const std::filesystem::path& path, const std::stop_token& st
     hash.update(std::span(buffer).first(got));
     bytes += got;
   }
-  return {path.filename().string(), bytes, hash.digest()};
+  return {name_in_store(path), bytes, hash.digest()};
 }
 
 SourceFile describe_with_files(const std::filesystem::path& input) {
   const NoProgress progress;
   const std::vector<std::filesystem::path> files = files_behind(input);
   if (files == std::vector{input}) return describe(input, {}, progress);
-  SourceFile all{input.filename().string(), 0, 0};
+  SourceFile all{name_in_store(input), 0, 0};
   Xxh64Stream hash;
   for (const std::filesystem::path& file : files) {
     const SourceFile one = describe(file, {}, progress);

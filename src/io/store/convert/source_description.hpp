@@ -12,6 +12,9 @@
 
 namespace clearway {
 
+/// The name of a file as a store keeps it: the last part of its path, as valid UTF-8.
+std::string name_in_store(const std::filesystem::path& path);
+
 /// Name, size and hash of an input; for standard input ("-") the name alone. Stops early when asked
 /// to, with what was read so far.
 SourceFile describe(const std::filesystem::path& path, const std::stop_token& stop,
