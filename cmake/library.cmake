@@ -16,5 +16,5 @@ target_link_libraries(clearway_package INTERFACE
   $<INSTALL_INTERFACE:Clearway::hdf5> $<INSTALL_INTERFACE:Clearway::openmp>
   $<INSTALL_INTERFACE:Clearway::proj>
   $<LINK_ONLY:TBB::tbb> $<LINK_ONLY:Threads::Threads> $<LINK_ONLY:pugixml::pugixml>
-  $<LINK_ONLY:SQLite::SQLite3> $<LINK_ONLY:ZLIB::ZLIB>
+  $<LINK_ONLY:SQLite::SQLite3> $<LINK_ONLY:ZLIB::ZLIB> $<LINK_ONLY:fmt::fmt>
   $<$<BOOL:${CLEARWAY_CUDA_FOUND}>:$<LINK_ONLY:CUDA::cudart_static>>)

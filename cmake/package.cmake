@@ -11,8 +11,8 @@ if(CLEARWAY_GZIP)
   install(FILES ${changelog} DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/clearway COMPONENT package)
 endif()
 # Libraries of headers, whose parts are in the binaries: their notices, as Debian has them.
-foreach(name libcli11-dev libeigen3-dev libspdlog-dev libxxhash-dev nlohmann-json3-dev
-    pybind11-dev)
+foreach(name libcli11-dev libeigen3-dev libfmt-dev libspdlog-dev libxxhash-dev
+    nlohmann-json3-dev pybind11-dev)
   if(EXISTS /usr/share/doc/${name}/copyright)
     install(FILES /usr/share/doc/${name}/copyright RENAME ${name}
       DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/clearway/notices COMPONENT package)
@@ -35,7 +35,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, libhdf5-dev, libproj-dev, libpugixml-dev, \
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "cmake, g++, libfmt-dev, libhdf5-dev, libproj-dev, libpugixml-dev, \
 libsqlite3-dev, libtbb-dev, python3-h5py, zlib1g-dev")
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 if(CLEARWAY_PYTHON_FOUND)

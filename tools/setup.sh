@@ -5,7 +5,7 @@
 program_packages=(
   cmake g++ ninja-build
   libhdf5-dev libeigen3-dev libtbb-dev libspdlog-dev libcli11-dev nlohmann-json3-dev libxxhash-dev
-  libpugixml-dev libproj-dev libsqlite3-dev zlib1g-dev
+  libpugixml-dev libproj-dev libsqlite3-dev libfmt-dev zlib1g-dev
 )
 # What the Python module needs besides, and what makes packages.
 python_packages=(pybind11-dev python3-dev python3-numpy)

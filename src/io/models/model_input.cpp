@@ -12,14 +12,13 @@
 #include "clearway/model.hpp"
 #include "clearway/outline.hpp"
 #include "core/geometry/axes.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/models/mesh_facts.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "io/models/surface_of.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/scans/scan_crs.hpp"
@@ -91,7 +90,7 @@ void read_points(ModelInput& input, bool has_unit) {
     warn(input.messages, input, "withheld-model-points",
          counted(withheld, "point") + " with the flag `withheld` " +
              (withheld == 1 ? "is" : "are") + " left out of the model as deleted",
-         {{"points", static_cast<double>(withheld)}});
+         {{"points", withheld}});
   }
   input.sampled_spacing = reader->info().model_spacing;
   const CloudInfo& info = reader->info();
@@ -218,7 +217,7 @@ void tell_remarks(ModelInput& input) {
     warn(input.messages, input, "mesh-crossing-faces",
          format_count(remarks.crossing) + " faces have an outline that crosses itself, the first " +
              remarks.first_crossing + "; what they mean is not certain",
-         {{"faces", static_cast<double>(remarks.crossing)}});
+         {{"faces", remarks.crossing}});
   }
 }
 
@@ -228,7 +227,7 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
   if (spacing == 0) {
     refuse(input.path.string(),
            "a mesh of " + contents_of(input) + "; expected a spacing for the points of its surface",
-           Remedy::kModelSpacing, 0);
+           Remedy::kModelSpacing);
   }
   const TriangleMesh surface = kept_surface(input, messages);
   Model shape = sample_mesh(surface, spacing, input.path.string());
@@ -239,8 +238,8 @@ Model sampled(const ModelInput& input, const ModelOptions& options,
                format_count(shape.vertices.size()) +
                " points; no place of its surface is farther than " + format_number(spacing) +
                " m from one",
-           {{"triangles", static_cast<double>(surface.triangles.size())},
-            {"points", static_cast<double>(shape.vertices.size())},
+           {{"triangles", surface.triangles.size()},
+            {"points", shape.vertices.size()},
             {"spacing", spacing}});
   return shape;
 }
@@ -324,14 +323,12 @@ std::string contents_of(const ModelInput& input) {
 }
 
 Message loose_vertices_warning(const ModelInput& input, std::uint64_t vertices) {
-  return warning(
-      "loose-vertices",
-      input.path.string() + ": " + counted(vertices, "vertex", "vertices") +
-          (vertices == 1 ? " belongs" : " belong") +
-          " to no face, line or point of the file, and " + (vertices == 1 ? "is" : "are") +
-          " not part of the model. If they are meant to show a part of the vehicle, such as a "
-          "mast, the search does not see it: join them by lines in the program that made the file",
-      {{"vertices", static_cast<double>(vertices)}});
+  return warning("loose-vertices", {{"vertices", vertices}},
+                 "{}: {}{} to no face, line or point of the file, and {} not part of the model. If "
+                 "they are meant to show a part of the vehicle, such as a mast, the search does "
+                 "not see it: join them by lines in the program that made the file",
+                 input.path.string(), counted(vertices, "vertex", "vertices"),
+                 vertices == 1 ? " belongs" : " belong", vertices == 1 ? "is" : "are");
 }
 
 ModelInput read_model_input(const std::filesystem::path& path, const ModelOptions& options) {

@@ -8,9 +8,8 @@
 
 #include "clearway/error.hpp"
 #include "clearway/outline.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/text_table.hpp"
 
 namespace clearway {
@@ -106,9 +105,8 @@ class TableOfOutlines {
       if (before.to <= after.from) continue;
       const auto& [first, second] = std::minmax(before.line, after.line);
       refuse_line(file_.name(), second,
-                  "overlaps line " + std::to_string(first) + " from " + format_brief(after.from) +
-                      " to " + format_brief(std::min(before.to, after.to)) +
-                      "; expected stretches that do not overlap");
+                  "overlaps line {} from {} to {}; expected stretches that do not overlap", first,
+                  format_brief(after.from), format_brief(std::min(before.to, after.to)));
     }
   }
 

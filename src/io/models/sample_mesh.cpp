@@ -12,8 +12,8 @@
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/models/mesh/mesh_builder.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -345,13 +345,12 @@ double rounder(double spacing) {
   } while (fits < kLargestSpacing && estimate(mesh, fits) > kMostSamples / 2.0);
   const Box box = box_of(vertices);
   refuse(name,
-         "the mesh is " + format_brief(box.hi.x - box.lo.x) + " x " +
-             format_brief(box.hi.y - box.lo.y) + " x " + format_brief(box.hi.z - box.lo.z) +
-             " m; at a spacing of " + format_number(spacing) + " m it takes " +
-             (samples > 0 ? "some " + format_brief(samples) + " points" : "more points") +
-             ", and at most " + format_count(kMostSamples) +
-             " are allowed. Is the file in metres? A spacing of " + format_number(fits) +
-             " m is possible",
+         fmt::format("the mesh is {} x {} x {} m; at a spacing of {} m it takes {}, and at most {} "
+                     "are allowed. Is the file in metres? A spacing of {} m is possible",
+                     format_brief(box.hi.x - box.lo.x), format_brief(box.hi.y - box.lo.y),
+                     format_brief(box.hi.z - box.lo.z), format_number(spacing),
+                     samples > 0 ? "some " + format_brief(samples) + " points" : "more points",
+                     format_count(kMostSamples), format_number(fits)),
          Remedy::kModelSpacing, fits);
 }
 
@@ -369,7 +368,7 @@ void check_spacing(const std::vector<Vec3>& vertices, double spacing, const std:
            "coordinates up to " + format_brief(largest) + " m are too large for a spacing of " +
                format_number(spacing) + " m; expected at most " +
                format_brief(spacing * kMostSpacings) + " m. Move the model to its own origin",
-           Remedy::kModelSpacing, 0);
+           Remedy::kModelSpacing);
   }
 }
 

@@ -55,7 +55,7 @@ TriangleMesh surface_of(const ModelInput& input, const ModelOptions& options,
   }
   messages.push_back(
       plain_note(input.path.string() + ": a mesh of " + contents_of(input) + ", searched as it is",
-                 {{"triangles", static_cast<double>(input.mesh.triangles.size())}}));
+                 {{"triangles", input.mesh.triangles.size()}}));
   if (options.radius > 0) {
     tell_bend(input, default_spacing(options.radius), "the spacing that points would have",
               messages);

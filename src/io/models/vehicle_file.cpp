@@ -12,13 +12,12 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "core/geometry/point_box.hpp"
-#include "core/messages/messages.hpp"
 #include "core/trajectory/follow/towed.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/models/model_input.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
@@ -347,14 +346,12 @@ constexpr double kFarLengths = 3;
 
 void warn_far(const std::filesystem::path& file, const BodyAhead& one, const std::string& what,
               double gap, double longest, std::vector<Message>& warnings) {
-  warnings.push_back(warning(
-      "body-far",
-      file.string() + ": " + one.entry.at.key() + " (" + one.entry.name + "): " + what + " " +
-          format_brief(gap) + " m away, and the longest body of the vehicle has " +
-          format_brief(longest) +
-          " m. Stations and pivots are metres ahead of the path's pose, negative ones behind: "
-          "check their sign and their unit",
-      {{"gap", gap}, {"length", longest}}));
+  warnings.push_back(warning("body-far", {{"gap", gap}, {"length", longest}},
+                             "{}: {} ({}): {} {} m away, and the longest body of the vehicle has "
+                             "{} m. Stations and pivots are metres ahead of the path's pose, "
+                             "negative ones behind: check their sign and their unit",
+                             file.string(), one.entry.at.key(), one.entry.name, what,
+                             format_brief(gap), format_brief(longest)));
 }
 
 /// Warns of bodies that are far from the others, as with mistyped stations or pivots. Such a body

@@ -10,6 +10,7 @@
 #include "clearway/file_unit.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -21,6 +22,12 @@ std::vector<Pose> PosesAlong::hand_over(std::vector<Message>* messages, PoseLabe
                      std::make_move_iterator(remarks.end()));
   }
   return std::move(poses);
+}
+
+void check_option(const std::optional<double>& value, const char* option, bool good,
+                  const char* expected) {
+  if (!value || (std::isfinite(*value) && good)) return;
+  throw UsageError(fmt::format("{}: {}; expected {}", option, format_digits(*value, 9), expected));
 }
 
 std::vector<double> even_stations(double from, double to, double step) {
@@ -71,13 +78,10 @@ void remark_cant(const std::string& name, const AlignmentCant& cant, double rail
   if (!lean.is_mostly_outwards()) return;
   const double share = lean.outwards / lean.curved;
   const double wrong = rail_distance * std::sin(lean.greatest);
-  out.warn("cant-side",
-           name + ": on " + format_brief(100 * share) +
-               " % of the length of its curves the outer rail is lower than the inner one, by up "
-               "to " +
-               format_brief(wrong / kMetresPerMillimetre) +
-               " mm, so the cant may be to the wrong side",
-           {{"share", share}, {"cant", wrong}});
+  out.warn("cant-side", {{"share", share}, {"cant", wrong}},
+           "{}: on {} % of the length of its curves the outer rail is lower than the inner one, by "
+           "up to {} mm, so the cant may be to the wrong side",
+           name, format_brief(100 * share), format_brief(wrong / kMetresPerMillimetre));
 }
 
 std::optional<std::int32_t> other_epsg(long code, const std::string& environment) {

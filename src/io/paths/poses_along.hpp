@@ -35,6 +35,10 @@ inline constexpr double kSameStation = 1e-6;
 /// The greatest number of poses that are made along one alignment or line.
 inline constexpr double kMostPosesAlong = 1e7;
 
+/// Throws UsageError where an option has a value that is not finite or not `good`.
+void check_option(const std::optional<double>& value, const char* option, bool good,
+                  const char* expected);
+
 /// The stations from + i step below `to`, and `to` itself, in metres. Throws UsageError for more
 /// than kMostPosesAlong.
 std::vector<double> even_stations(double from, double to, double step);

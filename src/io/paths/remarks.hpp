@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "clearway/progress.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 
@@ -22,6 +22,16 @@ struct Remarks {
   }
   void warn(WarningCode code, std::string text, MessageNumbers numbers = {}) {
     remarks.push_back(warning(code, std::move(text), std::move(numbers)));
+  }
+  template <typename... Args>
+  void note(NoteCode code, MessageNumbers numbers, fmt::format_string<const Args&...> text,
+            const Args&... args) {
+    note(code, fmt::format(text, args...), std::move(numbers));
+  }
+  template <typename... Args>
+  void warn(WarningCode code, MessageNumbers numbers, fmt::format_string<const Args&...> text,
+            const Args&... args) {
+    warn(code, fmt::format(text, args...), std::move(numbers));
   }
   void warn_or_note(bool warns, EitherCode code, std::string text, MessageNumbers numbers = {}) {
     remarks.push_back(warning_or_note(warns, code, std::move(text), std::move(numbers)));

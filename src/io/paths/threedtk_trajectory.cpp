@@ -7,7 +7,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/threedtk/threedtk_frame.hpp"
 
@@ -85,10 +85,9 @@ void read_threedtk_folder(const std::filesystem::path& folder, const TrajectoryO
   }
   for (const auto& [number, path] : poses) {
     if (files.count(number) == 0) {
-      refuse(folder.string(),
-             path.filename().string() +
-                 " has no .frames beside it, other scans have one; name the format to choose",
-             Remedy::kNameFormat);
+      refuse(folder.string(), Remedy::kNameFormat,
+             "{} has no .frames beside it, other scans have one; name the format to choose",
+             path.filename().string());
     }
   }
   for (const auto& [number, path] : files) read_one(path, out.format, out);

@@ -13,11 +13,11 @@
 #include "core/describe/labels.hpp"
 #include "core/describe/trajectory.hpp"
 #include "io/files/file.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/paths/geographic/sbet.hpp"
 #include "io/paths/text/text_trajectory.hpp"
 #include "io/paths/threedtk_trajectory.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/length_unit.hpp"
 
@@ -229,9 +229,7 @@ void apply_lever_arm(const std::filesystem::path& path, const Vec3& lever,
       double& coordinate = poses[i].translation[row];
       coordinate -= r[0] * lever.x + r[1] * lever.y + r[2] * lever.z;
       if (!std::isfinite(coordinate)) {
-        refuse(path.string(), "pose " + std::to_string(i) +
-                                  " and the lever arm give no finite "
-                                  "position");
+        refuse(path.string(), "pose {} and the lever arm give no finite position", i);
       }
     }
   }
@@ -242,10 +240,9 @@ void remark_times(const std::filesystem::path& path, TrajectoryFile& found) {
   const auto late = std::is_sorted_until(times.begin(), times.end());
   if (late == times.end()) return;
   const auto pose = static_cast<std::uint32_t>(late - times.begin());
-  found.warn("time-order",
-             path.string() + ": time goes back at pose " + std::to_string(pose) +
-                 "; poses are taken in the order of the file",
-             {{"pose", static_cast<double>(pose)}});
+  found.warn("time-order", {{"pose", pose}},
+             "{}: time goes back at pose {}; poses are taken in the order of the file",
+             path.string(), pose);
   found.remarks.back().stretches = {{pose - 1, pose}};
 }
 

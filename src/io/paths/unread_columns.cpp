@@ -58,8 +58,7 @@ void remark_unread_columns(const std::string& file, const std::vector<std::strin
   const bool one = names.size() == 1;
   const std::string text = file + ": " + counted(names.size(), "column") + (one ? " is" : " are") +
                            " not read: " + listed(names);
-  const std::vector<std::pair<std::string, double>> numbers{
-      {"columns", static_cast<double>(names.size())}};
+  const std::vector<std::pair<std::string, double>> numbers{{"columns", names.size()}};
   if (doubtful.empty()) {
     out.note("unread-columns", text, numbers);
     return;

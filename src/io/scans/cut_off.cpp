@@ -38,15 +38,11 @@ std::optional<Message> CutOffWarning::message() const {
   if (files_ == 0) return std::nullopt;
   std::string text = first_ + " that 32-bit integers can hold: a program cut off what lies beyond";
   if (files_ > 1) text += ". " + format_count(files_ - 1) + " more are alike";
-  const auto number = [](std::uint64_t value) { return static_cast<double>(value); };
   return warning("cut-off",
                  text +
                      ". These points stood elsewhere. Export the scan again with an offset near "
                      "it, or with coarser steps",
-                 {{"x", number(points_[0])},
-                  {"y", number(points_[1])},
-                  {"z", number(points_[2])},
-                  {"files", number(files_)}});
+                 {{"x", points_[0]}, {"y", points_[1]}, {"z", points_[2]}, {"files", files_}});
 }
 
 }  // namespace clearway

@@ -53,21 +53,18 @@ std::vector<Message> BoundsWarnings::messages() const {
   const auto more = [](const OfKind& kind) {
     return kind.count > 1 ? ". " + format_count(kind.count - 1) + " more are alike" : "";
   };
-  const auto number = [](const OfKind& kind) {
-    return MessageNumbers{{"count", static_cast<double>(kind.count)}};
-  };
   if (partly_.count > 0) {
     out.push_back(
         warning("declared-bounds",
                 partly_.first + more(partly_) +
                     ". Some records may be damaged or zero: copy or export the scan again",
-                number(partly_)));
+                {{"count", partly_.count}}));
   }
   if (wholly_.count > 0) {
     out.push_back(warning("outside-bounds",
                           wholly_.first + more(wholly_) +
                               ". The bounds may be those of another scan or in another unit",
-                          number(wholly_)));
+                          {{"count", wholly_.count}}));
   }
   return out;
 }

@@ -6,21 +6,11 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_lines.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
-
-/// Whether a text begins with the byte order mark of UTF-16, or with two characters that fill it
-/// with zeros. first: its first four bytes, or fewer.
-bool is_utf16(std::string_view first) {
-  if (first.starts_with("\xFF\xFE") || first.starts_with("\xFE\xFF")) return true;
-  const auto has_zeros = [&](std::size_t from) {
-    return first[from] == 0 && first[from + 2] == 0 && first[1 - from] != 0 && first[3 - from] != 0;
-  };
-  return first.size() == 4 && (has_zeros(0) || has_zeros(1));
-}
 
 /// Whether a line such as "sep=;" begins here. first: its first six bytes, or fewer.
 bool is_separator_line(std::string_view first) {
@@ -29,6 +19,16 @@ bool is_separator_line(std::string_view first) {
 }
 
 }  // namespace
+
+std::optional<std::endian> byte_order_of_utf16(std::string_view text) {
+  const auto has_zeros = [&](std::size_t from) {
+    return text.size() >= 4 && text[from] == 0 && text[from + 2] == 0 && text[1 - from] != 0 &&
+           text[3 - from] != 0;
+  };
+  if (text.starts_with("\xFE\xFF") || has_zeros(0)) return std::endian::big;
+  if (text.starts_with("\xFF\xFE") || has_zeros(1)) return std::endian::little;
+  return std::nullopt;
+}
 
 InputBuffer::InputBuffer(File file, Access access)
     : file_(std::move(file)), buffer_(std::make_unique<std::byte[]>(kCapacity)) {
@@ -142,7 +142,7 @@ void InputBuffer::begin_text() {
   };
   const std::string_view first = peek_text(16);
   refuse_foreign(name(), first);
-  if (is_utf16(first.substr(0, 4))) {
+  if (byte_order_of_utf16(first)) {
     refuse(name(),
            "is text in UTF-16, which some programs call Unicode; expected UTF-8. Save it as UTF-8 "
            "or as CSV");

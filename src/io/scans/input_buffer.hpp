@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,6 +13,10 @@
 #include "io/files/file.hpp"
 
 namespace clearway {
+
+/// The order of the bytes in a text in UTF-16, by its byte order mark or by the zeros of its first
+/// two characters; nullopt for other texts.
+std::optional<std::endian> byte_order_of_utf16(std::string_view text);
 
 /// Reads a file front to back through one buffer, as runs of bytes or as lines, in constant memory
 /// whatever the file declares.

@@ -6,6 +6,7 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -77,8 +78,7 @@ bool are_same(double metres, double other) {
 
 FileUnit FileUnit::named(std::string_view name) {
   if (const auto unit = file_unit_of(name)) return *unit;
-  throw UsageError("\"" + std::string(name) + "\" is no unit of length; expected " +
-                   file_unit_list());
+  throw UsageError(fmt::format("\"{}\" is no unit of length; expected {}", name, file_unit_list()));
 }
 
 double FileUnit::metres_in(double environment_unit) const {

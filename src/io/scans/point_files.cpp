@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/scans/threedtk/threedtk_reader.hpp"
@@ -87,10 +86,6 @@ std::string names_of(const std::vector<fs::path>& files, std::size_t most = kMos
   return text + " and " + std::to_string(files.size() - most) + " more";
 }
 
-std::string counted(std::size_t count, const std::string& noun) {
-  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
-}
-
 bool is_pose_file(const fs::path& file) {
   return file.extension() == ".pose" || file.extension() == ".frames";
 }
@@ -128,50 +123,40 @@ void warn_of_left_out(const fs::path& path, Folder& folder, std::vector<Message>
   const std::vector<fs::path> folders = take(folder.folders, holds_point_files);
   const std::vector<fs::path> files = take(folder.others, looks_like_points);
   if (folders.empty() && files.empty()) return;
-  std::string what;
+  std::vector<std::string> what;
   if (!folders.empty()) {
-    what = counted(folders.size(), "folder") +
-           (folders.size() == 1 ? " that holds point files (" : " that hold point files (") +
-           names_of(folders, kMost) + ")";
+    what.push_back(fmt::format("{} that {} point files ({})", counted(folders.size(), "folder"),
+                               folders.size() == 1 ? "holds" : "hold", names_of(folders, kMost)));
   }
   if (!files.empty()) {
-    what += (what.empty() ? "" : " and ") + counted(files.size(), "file") +
-            (files.size() == 1 ? " that looks like points (" : " that look like points (") +
-            names_of(files, kMost) + ")";
+    what.push_back(fmt::format("{} that {} like points ({})", counted(files.size(), "file"),
+                               files.size() == 1 ? "looks" : "look", names_of(files, kMost)));
   }
-  remarks.push_back(
-      warning("left-out",
-              path.string() + ": left out " + what +
-                  ". The environment lacks them; if they belong to it, name them as inputs "
-                  "too",
-              {{"files", static_cast<double>(files.size())},
-               {"folders", static_cast<double>(folders.size())}}));
+  remarks.push_back(warning(
+      "left-out", {{"files", files.size()}, {"folders", folders.size()}},
+      "{}: left out {}. The environment lacks them; if they belong to it, name them as inputs too",
+      path.string(), format_list(what)));
 }
 
 void remark_on(const fs::path& path, Folder folder, std::vector<Message>& remarks) {
   const std::vector<fs::path> poses = take_poses(folder);
   if (!poses.empty()) {
-    remarks.push_back(
-        warning("poses-not-applied",
-                path.string() + ": " + counted(poses.size(), "file") +
-                    " with the pose of a scan (" + names_of(poses) +
-                    "). Poses are applied to files with the ending 3d only, these scans "
-                    "stay as they are",
-                {{"files", static_cast<double>(poses.size())}}));
+    remarks.push_back(warning("poses-not-applied", {{"files", poses.size()}},
+                              "{}: {} with the pose of a scan ({}). Poses are applied to files "
+                              "with the ending 3d only, these scans stay as they are",
+                              path.string(), counted(poses.size(), "file"), names_of(poses)));
   }
   warn_of_left_out(path, folder, remarks);
   if (folder.others.empty() && folder.folders.empty()) return;
-  std::string what;
-  if (!folder.others.empty()) {
-    what = counted(folder.others.size(), "file") + " (" + names_of(folder.others) + ")";
+  std::vector<std::string> what;
+  for (const auto& [names, noun] :
+       {std::pair(&folder.others, "file"), {&folder.folders, "folder"}}) {
+    if (names->empty()) continue;
+    what.push_back(fmt::format("{} ({})", counted(names->size(), noun), names_of(*names)));
   }
-  if (!folder.folders.empty()) {
-    what += (what.empty() ? "" : " and ") + counted(folder.folders.size(), "folder") + " (" +
-            names_of(folder.folders) + ")";
-  }
-  remarks.push_back(note("left-out", path.string() + ": left out " + what,
-                         {{"files", static_cast<double>(folder.others.size())},
-                          {"folders", static_cast<double>(folder.folders.size())}}));
+  remarks.push_back(note("left-out",
+                         {{"files", folder.others.size()}, {"folders", folder.folders.size()}},
+                         "{}: left out {}", path.string(), format_list(what)));
 }
 
 std::vector<fs::path> files_of_folder(const fs::path& path, std::vector<Message>* remarks) {

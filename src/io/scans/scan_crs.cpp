@@ -12,6 +12,8 @@
 
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
+#include "io/scans/input_buffer.hpp"
+#include "io/scans/text/text_table.hpp"
 
 namespace clearway {
 
@@ -114,15 +116,10 @@ std::string from_utf16(std::string_view bytes, bool big) {
 
 std::string crs_text_of(std::span<const std::byte> bytes) {
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  const auto has_zeros = [&](std::size_t from) {
-    return text.size() >= 4 && text[from] == 0 && text[from + 2] == 0 && text[1 - from] != 0 &&
-           text[3 - from] != 0;
-  };
   std::string decoded;
-  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
-    decoded = from_utf16(text.substr(2), text.starts_with("\xFE"));
-  } else if (has_zeros(0) || has_zeros(1)) {
-    decoded = from_utf16(text, has_zeros(0));
+  if (const auto order = byte_order_of_utf16(text)) {
+    const bool is_marked = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+    decoded = from_utf16(text.substr(is_marked ? 2 : 0), order == std::endian::big);
   } else {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     decoded = text.substr(0, text.find('\0'));
@@ -411,12 +408,6 @@ struct Axis {
   bool contradicts() const { return named_unit > 0 && !are_alike(unit, named_unit); }
 };
 
-std::string lower(std::string_view text) {
-  std::string out(text);
-  for (char& c : out) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
-
 Axis axis_of(PJ_CONTEXT* context, const PJ* system, int number) {
   Axis out;
   const char *direction = nullptr, *unit = nullptr;
@@ -426,7 +417,7 @@ Axis axis_of(PJ_CONTEXT* context, const PJ* system, int number) {
   }
   if (direction != nullptr) out.direction = direction;
   if (unit != nullptr) out.unit_name = unit;
-  const NamedUnit* const named = find_unit(lower(out.unit_name));
+  const NamedUnit* const named = find_unit(lower_case(out.unit_name));
   if (named != nullptr) out.named_unit = named->metres();
   return out;
 }

@@ -10,6 +10,7 @@
 #include "io/files/bytes.hpp"
 #include "io/models/mesh/mesh_reader.hpp"
 #include "io/models/mesh/mesh_text.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text_copy.hpp"
 
 namespace clearway {
@@ -134,13 +135,12 @@ MeshFile read_stl(InputBuffer input) {
   }
   refuse_if_copied_as_text(input.file());
   const bool longer = size > expected;
-  refuse_byte(input.name(), 80,
-              "declares " + std::to_string(start.triangles) + " triangles, that is " +
-                  std::to_string(expected) + " bytes in all; the file has " + std::to_string(size) +
-                  (longer ? ", which is " + counted(size - expected, "byte") +
-                                " more. Triangles may be missing in the number, or something else "
-                                "was appended; export it again"
-                          : ". It may be cut; export it again"));
+  refuse_byte(input.name(), 80, "declares {} triangles, that is {} bytes in all; the file has {}{}",
+              start.triangles, expected, size,
+              longer ? ", which is " + counted(size - expected, "byte") +
+                           " more. Triangles may be missing in the number, or something else "
+                           "was appended; export it again"
+                     : ". It may be cut; export it again");
 }
 
 }  // namespace clearway

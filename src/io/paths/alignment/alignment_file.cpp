@@ -8,31 +8,24 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/alignment/alignment_parts.hpp"
 #include "io/paths/alignment/land_xml.hpp"
 #include "io/paths/poses_along.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
 namespace {
 
-void check_number(const std::optional<double>& value, const char* option, bool good,
-                  const char* expected) {
-  if (!value || (std::isfinite(*value) && good)) return;
-  throw UsageError(std::string(option) + ": " + format_digits(*value, 9) + "; expected " +
-                   expected);
-}
-
 void check_options(const AlignmentOptions& options) {
-  check_number(options.step, "--step", options.step > 0, "a length above 0");
-  check_number(options.max_gap, "--max-gap", options.max_gap >= 0, "a length of 0 or more");
-  check_number(options.rail_distance, "--rail-distance", options.rail_distance.value_or(1) > 0,
+  check_option(options.step, "--step", options.step > 0, "a length above 0");
+  check_option(options.max_gap, "--max-gap", options.max_gap >= 0, "a length of 0 or more");
+  check_option(options.rail_distance, "--rail-distance", options.rail_distance.value_or(1) > 0,
                "a length above 0");
-  check_number(options.station_from, "--from", true, "a finite station");
-  check_number(options.station_to, "--to", true, "a finite station");
-  check_number(options.height, "--height", true, "a finite height");
+  check_option(options.station_from, "--from", true, "a finite station");
+  check_option(options.station_to, "--to", true, "a finite station");
+  check_option(options.height, "--height", true, "a finite height");
   if (options.station_from && options.station_to && *options.station_from > *options.station_to) {
     throw UsageError("--from " + format_digits(*options.station_from, 9) + " is after --to " +
                      format_digits(*options.station_to, 9) +
@@ -86,9 +79,8 @@ void clip_to_profile(const LandXml& xml, const AlignmentProfile& profile, Reach&
       ends > kWorthTelling ? "end " + format_brief(ends) + " m earlier" : std::string();
   if (later.empty() && earlier.empty()) return;
   out.warn("profile-shorter",
-           xml.name() + ": " + has + ", so the poses " + later +
-               (later.empty() || earlier.empty() ? "" : " and ") + earlier +
-               " than what was wanted of the plan",
+           fmt::format("{}: {}, so the poses {}{}{} than what was wanted of the plan", xml.name(),
+                       has, later, later.empty() || earlier.empty() ? "" : " and ", earlier),
            {{"first", xml.in_units(profile.first_station())},
             {"last", xml.in_units(profile.last_station())},
             {"begins_after", begins},
@@ -122,12 +114,11 @@ void remark_feet(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& o
   const double other = unit == kMetresPerFoot ? kMetresPerUsSurveyFoot : kMetresPerFoot;
   const double moved = feet_apart(largest, unit, other);
   if (!(moved > kFeetApart)) return;
-  out.warn("alignment-feet",
-           xml.name() + ": the coordinates are in " + units_text(unit) + ", up to " +
-               xml.unit_text(largest) + "; in " + units_text(other) + " they would be " +
-               format_brief(moved) +
-               " m elsewhere, so make sure that the scan and the file mean the same foot",
-           {{"metres", moved}});
+  out.warn("alignment-feet", {{"metres", moved}},
+           "{}: the coordinates are in {}, up to {}; in {} they would be {} m elsewhere, so make "
+           "sure that the scan and the file mean the same foot",
+           xml.name(), units_text(unit), xml.unit_text(largest), units_text(other),
+           format_brief(moved));
 }
 
 /// The EPSG code of a CoordinateSystem; 0 where it names none.
@@ -148,19 +139,17 @@ void remark_crs(const LandXml& xml, const std::string& environment, AlignmentFil
   for (const pugi::xml_node system : xml.root().children("CoordinateSystem")) {
     const long found = epsg_of(xml, system);
     if (code != 0 && found != 0 && found != code) {
-      out.warn("alignment-crs",
-               xml.name() + ": names two coordinate systems, EPSG:" + std::to_string(code) +
-                   " and EPSG:" + std::to_string(found) +
-                   "; the coordinates were not converted, so make sure that they are in that of "
-                   "the environment",
-               {{"alignment", static_cast<double>(code)}, {"other", static_cast<double>(found)}});
+      out.warn("alignment-crs", {{"alignment", code}, {"other", found}},
+               "{}: names two coordinate systems, EPSG:{} and EPSG:{}; the coordinates were not "
+               "converted, so make sure that they are in that of the environment",
+               xml.name(), code, found);
       return;
     }
     if (code == 0) code = found;
   }
   if (const auto other = other_epsg(code, environment)) {
     out.warn("alignment-crs", other_crs_text(xml.name(), code, *other, "alignment"),
-             {{"alignment", static_cast<double>(code)}, {"environment", *other}});
+             {{"alignment", code}, {"environment", *other}});
   }
 }
 

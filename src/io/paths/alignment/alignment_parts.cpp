@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -109,8 +109,7 @@ double curvature(const LandXml& xml, pugi::xml_node node, const char* name) {
   const auto text = xml.required(xml.attribute(node, name), node, name, "a radius or INF");
   const auto radius = whole_number_of<double>(without_space_around(text));
   if (!radius || !(*radius >= 0)) {
-    xml.refuse_at(node, "has " + std::string(name) + "=" + excerpt(text) +
-                            "; expected a radius above 0, or INF");
+    xml.refuse_value(node, name, "a radius above 0, or INF");
   }
   const double metres = *radius * xml.metres_per_unit();
   return metres == 0 || std::isinf(metres) ? 0 : 1 / metres;
@@ -177,11 +176,10 @@ void check_mirrored(const LandXml& xml, const AlignmentPlan& plan, std::vector<P
     element.length = 2 * std::numbers::pi / std::abs(element.first_curvature) - element.length;
   }
   if (kinks_of(plan_of(parts, plan.first_station())).places > 0) return;
-  refuse(xml.name(), "the direction jumps by up to " +
-                         format_brief(kinks.most * 180 / std::numbers::pi) +
-                         " degrees between the elements of the plan, but nowhere if all curves "
-                         "turned the other way. " +
-                         xml.swapped_advice());
+  refuse(xml.name(),
+         "the direction jumps by up to {} degrees between the elements of the plan, but nowhere if "
+         "all curves turned the other way. {}",
+         format_brief(kinks.most * 180 / std::numbers::pi), xml.swapped_advice());
 }
 
 /// Refuses gaps, and elements whose ends do not fit their length and curvature.
@@ -210,12 +208,10 @@ void remark_kinks(const LandXml& xml, const AlignmentPlan& plan, AlignmentFile& 
   if (kinks.places == 0) return;
   const double degrees = kinks.most * 180 / std::numbers::pi;
   const double station = xml.in_units(kinks.station);
-  out.warn(
-      "alignment-kink",
-      xml.name() + ": the direction jumps between elements at " + counted(kinks.places, "place") +
-          ", by up to " + format_brief(degrees) + " degrees at station " + metres_text(station) +
-          ". There the vehicle turns on the spot, so check the curves of the file",
-      {{"places", static_cast<double>(kinks.places)}, {"degrees", degrees}, {"station", station}});
+  out.warn("alignment-kink", {{"places", kinks.places}, {"degrees", degrees}, {"station", station}},
+           "{}: the direction jumps between elements at {}, by up to {} degrees at station {}. "
+           "There the vehicle turns on the spot, so check the curves of the file",
+           xml.name(), counted(kinks.places, "place"), format_brief(degrees), metres_text(station));
 }
 
 /// Warns where lengths and stations that the file declares are not those of its elements.
@@ -225,11 +221,10 @@ void remark_declared(const LandXml& xml, pugi::xml_node alignment,
   const double sum = plan.last_station() - plan.first_station();
   const auto length = xml.length(alignment, "length");
   if (length && !(std::abs(*length - sum) <= kDeclared)) {
-    out.warn("alignment-length",
-             xml.name() + ": the alignment is declared to be " + metres_text(*length) +
-                 " m long, but its elements are " + metres_text(sum) +
-                 " m together, which counts. Elements may be missing in the file",
-             {{"declared", *length}, {"elements", sum}});
+    out.warn("alignment-length", {{"declared", *length}, {"elements", sum}},
+             "{}: the alignment is declared to be {} m long, but its elements are {} m together, "
+             "which counts. Elements may be missing in the file",
+             xml.name(), metres_text(*length), metres_text(sum));
   }
   Excess off;
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -240,12 +235,10 @@ void remark_declared(const LandXml& xml, pugi::xml_node alignment,
   if (off.places == 0) return;
   const double station = xml.in_units(off.station);
   out.warn(
-      "alignment-stations",
-      xml.name() + ": the declared stations of " + counted(off.places, "element") +
-          " differ from the sum of the lengths before them, by up to " + metres_text(off.most) +
-          " m at station " + metres_text(station) +
-          ". The sum counts; heights and cant may then belong to other places",
-      {{"elements", static_cast<double>(off.places)}, {"metres", off.most}, {"station", station}});
+      "alignment-stations", {{"elements", off.places}, {"metres", off.most}, {"station", station}},
+      "{}: the declared stations of {} differ from the sum of the lengths before them, by up to {} "
+      "m at station {}. The sum counts; heights and cant may then belong to other places",
+      xml.name(), counted(off.places, "element"), metres_text(off.most), metres_text(station));
 }
 
 /// Refuses a station that is not after the one before it.
@@ -292,11 +285,10 @@ pugi::xml_node choose_by_name(const LandXml& xml, const std::vector<pugi::xml_no
     refuse(xml.name(), "has no " + noun + " of the name " + excerpt(wanted) + "; expected one of " +
                            listed(names));
   }
-  refuse(xml.name(),
-         "has " + counted(found.size(), noun) +
-             (wanted.empty() ? ": " + listed(names) + "; choose one by its name, with " + option
-                             : " of the name " + excerpt(wanted) +
-                                   "; expected one. Give them different names in the file"));
+  refuse(xml.name(), "has {}{}", counted(found.size(), noun),
+         wanted.empty() ? ": " + listed(names) + "; choose one by its name, with " + option
+                        : " of the name " + excerpt(wanted) +
+                              "; expected one. Give them different names in the file");
 }
 
 namespace {
@@ -405,11 +397,10 @@ std::optional<AlignmentProfile> read_profile(const LandXml& xml, pugi::xml_node 
     const double overlap = profile.overlap_before(i);
     if (overlap <= options.max_gap) continue;
     const std::string by = metres_text(overlap);
-    xml.refuse_at(parts[i].node,
-                  (parts[i].is_curve() ? "its curve begins " + by +
-                                             " m before the previous point or the end of its curve"
-                                       : "the curve before it ends " + by + " m beyond it") +
-                      "; expected curves that do not overlap");
+    xml.refuse_at(parts[i].node, "{}; expected curves that do not overlap",
+                  parts[i].is_curve() ? "its curve begins " + by +
+                                            " m before the previous point or the end of its curve"
+                                      : "the curve before it ends " + by + " m beyond it");
   }
   return profile;
 }
@@ -456,9 +447,7 @@ void remark_ramps(const LandXml& xml, const std::vector<CantPoint>& points,
                "has another one. A type was taken for the ramp that begins at its station; "
                "otherwise the cant would differ by up to " +
                metres_text(apart.most) + " m before station " + metres_text(apart.station),
-           {{"stations", static_cast<double>(apart.places)},
-            {"metres", apart.most},
-            {"station", apart.station}});
+           {{"stations", apart.places}, {"metres", apart.most}, {"station", apart.station}});
 }
 
 /// The cant of a station, positive with the left rail high.
@@ -510,10 +499,10 @@ std::optional<double> gauge_of(const LandXml& xml, pugi::xml_node cant) {
   constexpr double kMostGauge = 10;
   const auto number = xml.number(cant, "gauge");
   if (number && !(*number > 0 && *number <= kMostGauge)) {
-    xml.refuse_at(cant, "has gauge=" + excerpt(*xml.attribute(cant, "gauge")) +
-                            "; expected a number above 0 and up to " + format_number(kMostGauge) +
-                            " in the file's unit, the " + xml.unit_name() +
-                            ", for example 1.435 in metres");
+    xml.refuse_value(cant, "gauge",
+                     fmt::format("a number above 0 and up to {} in the file's unit, the {}, for "
+                                 "example 1.435 in metres",
+                                 format_number(kMostGauge), xml.unit_name()));
   }
   return xml.length(cant, "gauge");
 }
@@ -562,10 +551,9 @@ void read_cant(const LandXml& xml, pugi::xml_node alignment, const AlignmentOpti
 
 void remark_left_out(const LandXml& xml, pugi::xml_node alignment, AlignmentFile& out) {
   if (alignment.child("Superelevation")) {
-    out.warn("superelevation",
-             xml.name() +
-                 ": the superelevation of the road is not read, so the poses are level "
-                 "across where the road leans");
+    out.warn("superelevation", fmt::format("{}: the superelevation of the road is not read, so the "
+                                           "poses are level across where the road leans",
+                                           xml.name()));
   }
   std::size_t count = 0;
   std::string first;
@@ -580,7 +568,7 @@ void remark_left_out(const LandXml& xml, pugi::xml_node alignment, AlignmentFile
   out.warn("station-equations",
            xml.name() + ": " + counted(count, "equation") + " of stations" + first +
                ". All stations that are given and written are internal ones, which run on evenly",
-           {{"equations", static_cast<double>(count)}});
+           {{"equations", count}});
 }
 
 }  // namespace clearway

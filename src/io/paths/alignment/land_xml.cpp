@@ -8,6 +8,7 @@
 #include "io/files/file.hpp"
 #include "io/files/json.hpp"
 #include "io/files/text_lines.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -109,8 +110,7 @@ std::string LandXml::name_of(pugi::xml_node node) const {
 std::optional<double> LandXml::number(pugi::xml_node node, const char* name) const {
   const auto value = number_attribute<double>(node, name);
   if (value && !std::isfinite(*value)) {
-    refuse_at(node, "has " + std::string(name) + "=" + excerpt(*attribute(node, name)) +
-                        "; expected a finite number");
+    refuse_value(node, name, "a finite number");
   }
   return value;
 }
@@ -119,8 +119,7 @@ std::optional<double> LandXml::length(pugi::xml_node node, const char* name, dou
   const auto value = number(node, name);
   if (!value) return value;
   if (!(*value >= least)) {
-    refuse_at(node, "has " + std::string(name) + "=" + excerpt(*attribute(node, name)) +
-                        "; expected " + format_number(least) + " or more");
+    refuse_value(node, name, format_number(least) + " or more");
   }
   return in_metres(*value);
 }
@@ -168,8 +167,7 @@ std::optional<std::complex<double>> LandXml::find_place(pugi::xml_node parent,
 
 std::complex<double> LandXml::place(pugi::xml_node parent, const char* name) const {
   const auto found = find_place(parent, name);
-  if (!found)
-    refuse_at(parent, "has no " + std::string(name) + "; expected a northing and an easting");
+  if (!found) refuse_at(parent, "has no {}; expected a northing and an easting", name);
   return *found;
 }
 

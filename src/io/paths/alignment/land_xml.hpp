@@ -13,8 +13,8 @@
 
 #include "clearway/alignment.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/xml_text.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 
@@ -30,6 +30,19 @@ class LandXml : public XmlText {
 
   /// Reads and parses the file. order: of its coordinates. Throws InputError and ResourceError.
   LandXml(const std::filesystem::path& path, AxisOrder order);
+
+  using XmlText::refuse_at;
+  template <typename... Args>
+  [[noreturn]] void refuse_at(pugi::xml_node node, fmt::format_string<const Args&...> what,
+                              const Args&... args) const {
+    refuse_at(node, fmt::format(what, args...));
+  }
+
+  /// Refuses the value of an attribute: "has NAME=VALUE; expected ...".
+  [[noreturn]] void refuse_value(pugi::xml_node node, const char* name,
+                                 const std::string& expected) const {
+    refuse_at(node, "has {}={}; expected {}", name, excerpt(*attribute(node, name)), expected);
+  }
 
   double metres_per_unit() const { return metres_; }
   /// The unit's name in LandXML, such as "USSurveyFoot".
@@ -62,8 +75,7 @@ class LandXml : public XmlText {
   template <typename Value>
   Value required(const std::optional<Value>& value, pugi::xml_node node, const char* attribute,
                  const std::string& what) const {
-    if (!value)
-      refuse_at(node, "has no attribute " + std::string(attribute) + "; expected " + what);
+    if (!value) refuse_at(node, "has no attribute {}; expected {}", attribute, what);
     return *value;
   }
 
@@ -82,8 +94,7 @@ class LandXml : public XmlText {
       list += (list.empty() ? "" : last ? " or " : ", ") + std::string(name);
     }
     required(text, node, attribute_name, list + otherwise);
-    refuse_at(node, "has " + std::string(attribute_name) + "=" + excerpt(*text) + "; expected " +
-                        list + otherwise);
+    refuse_value(node, attribute_name, list + otherwise);
   }
 
   /// The finite numbers of an element's text. Throws where there are fewer than `least` or more

@@ -5,10 +5,9 @@
 #include <limits>
 
 #include "core/geometry/angle.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/geographic/map_projection.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/scans/map_scale.hpp"
 
@@ -53,10 +52,9 @@ void check_shape(const MapProjection& map, const AttitudeRow& row, const std::st
            Remedy::kNameCrs);
   }
   if (skew > kConformal) {
-    out.warn("map-distorts",
-             name + ": " + map.name() + " distorts angles by " + format_digits(skew / kDegree, 9) +
-                 " degrees; a rigid model does not fit such a map",
-             {{"degrees", skew / kDegree}});
+    out.warn("map-distorts", {{"degrees", skew / kDegree}},
+             "{}: {} distorts angles by {} degrees; a rigid model does not fit such a map", name,
+             map.name(), format_digits(skew / kDegree, 9));
   }
 }
 
@@ -86,27 +84,24 @@ void remark_map(const MapProjection& map, const TrajectoryOptions& options, cons
            {{"least_scale", ranges.scale.least}, {"greatest_scale", ranges.scale.greatest}});
   const double unit = map.metres_per_unit(), environment = options.environment_unit;
   if (environment != 1 && std::abs(unit - environment) > 1e-9) {
-    out.warn("map-unit",
-             name + ": positions are in the unit of " + map.name() + ", " + format_digits(unit, 9) +
-                 " m, but the environment is in " + units_text(environment) +
-                 ". Give the CRS of the environment",
-             {{"metres", unit}});
+    out.warn("map-unit", {{"metres", unit}},
+             "{}: positions are in the unit of {}, {} m, but the environment is in {}. Give the "
+             "CRS of the environment",
+             name, map.name(), format_digits(unit, 9), units_text(environment));
   } else if (unit < kFeet) {
-    out.note("map-unit",
-             name + ": the unit of " + map.name() + " is " + format_digits(unit, 9) +
-                 " m; model, radius and lever arm are to be in it too",
-             {{"metres", unit}});
+    out.note("map-unit", {{"metres", unit}},
+             "{}: the unit of {} is {} m; model, radius and lever arm are to be in it too", name,
+             map.name(), format_digits(unit, 9));
   }
   const MapScale& worst = ranges.worst;
   if (worst.error() > kMapScaleWarning) {
-    out.warn("map-scale",
-             name + ": lengths on the map of " + map.name() + " are wrong by " +
-                 format_digits(100 * worst.error(), 9) + " % at longitude " +
-                 format_brief(worst.longitude) + ", latitude " + format_brief(worst.latitude) +
-                 ": they are " + format_brief(worst.farthest) + " times those on the ground (" +
-                 format_brief(worst.mean) +
-                 " times by area). Another zone or another CRS may be meant",
-             {{"error", worst.error()}, {"scale", worst.farthest}, {"mean_scale", worst.mean}});
+    out.warn(
+        "map-scale",
+        {{"error", worst.error()}, {"scale", worst.farthest}, {"mean_scale", worst.mean}},
+        "{}: lengths on the map of {} are wrong by {} % at longitude {}, latitude {}: they are {} "
+        "times those on the ground ({} times by area). Another zone or another CRS may be meant",
+        name, map.name(), format_digits(100 * worst.error(), 9), format_brief(worst.longitude),
+        format_brief(worst.latitude), format_brief(worst.farthest), format_brief(worst.mean));
   }
 }
 
@@ -137,11 +132,10 @@ void append_geographic_poses(std::span<const AttitudeRow> rows, AngleFrame frame
   for (const AttitudeRow& row : rows) {
     const auto place = map.place(row.position[0], row.position[1], row.position[2]);
     if (!place) {
-      refuse(name,
-             "pose " + std::to_string(out.poses.size()) + ": " + map.name() +
-                 " does not reach latitude " + format_digits(row.position[1], 9) + ", longitude " +
-                 format_digits(row.position[0], 9) + "; expected a CRS of this place",
-             Remedy::kNameCrs);
+      refuse(name, Remedy::kNameCrs,
+             "pose {}: {} does not reach latitude {}, longitude {}; expected a CRS of this place",
+             out.poses.size(), map.name(), format_digits(row.position[1], 9),
+             format_digits(row.position[0], 9));
     }
     Pose pose{{}, {place->position.x, place->position.y, place->position.z}};
     set_rotation(row, frame, place->north, pose);

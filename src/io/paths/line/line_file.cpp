@@ -9,31 +9,27 @@
 #include "clearway/error.hpp"
 #include "clearway/store.hpp"
 #include "core/geometry/angle.hpp"
-#include "core/messages/messages.hpp"
 #include "core/trajectory/line/line_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/line/line_ground.hpp"
 #include "io/paths/line/line_vertices.hpp"
 #include "io/paths/poses_along.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
 namespace {
 
-void check_number(const std::optional<double>& value, const char* name, bool above_0,
-                  const char* expected) {
-  if (!value || (std::isfinite(*value) && (!above_0 || *value > 0))) return;
-  throw UsageError(std::string(name) + ": " + format_digits(*value, 9) + "; expected " + expected);
-}
-
 void check_options(const LineOptions& options) {
-  check_number(options.step, "step", true, "a length above 0");
-  check_number(options.corner_radius, "corner radius", true, "a length above 0");
-  check_number(options.rail_distance, "rail distance", true, "a length above 0");
-  check_number(options.height, "height", false, "a finite height");
-  check_number(options.track, "track", true, "a length above 0");
+  const auto above_0 = [](const std::optional<double>& value, const char* option) {
+    check_option(value, option, value > 0.0, "a length above 0");
+  };
+  above_0(options.step, "step");
+  above_0(options.corner_radius, "corner radius");
+  above_0(options.rail_distance, "rail distance");
+  check_option(options.height, "height", true, "a finite height");
+  above_0(options.track, "track");
   if ((options.ground != nullptr) != options.track.has_value()) {
     throw UsageError(
         "the ground gives height and roll only together with the track, the distance between the "
@@ -147,10 +143,9 @@ class LineReading {
                 {{"metres", metres}});
     }
     if (metres != 1) {
-      out_.note(
-          "trajectory-unit",
-          name_ + ": positions were multiplied by " + format_digits(metres, 9) + " to give metres",
-          {{"metres", metres}});
+      out_.note("trajectory-unit", {{"metres", metres}},
+                "{}: positions were multiplied by {} to give metres", name_,
+                format_digits(metres, 9));
     }
     if (!is_foot(metres) || !is_foot(options_.environment_unit)) return;
     const double largest = std::max(greatest_of(std::ranges::minmax(line_.x)),
@@ -165,7 +160,7 @@ class LineReading {
   void remark_crs() {
     if (const auto other = other_epsg(line_.epsg, options_.environment_crs)) {
       out_.warn("line-crs", other_crs_text(name_, line_.epsg, *other, "line"),
-                {{"line", static_cast<double>(line_.epsg)}, {"environment", *other}});
+                {{"line", line_.epsg}, {"environment", *other}});
     }
   }
 
@@ -181,21 +176,18 @@ class LineReading {
     const bool ascends = stations.back() >= stations.front();
     for (std::size_t i = 1; i < stations.size(); ++i) {
       if (stations[i] != stations[i - 1] && (stations[i] > stations[i - 1]) == ascends) continue;
-      out_.warn("station-order",
-                name_ + ": " + line_.place_of(i) + ": the station " +
-                    format_digits(stations[i], 9) + " m comes after " +
-                    format_digits(stations[i - 1], 9) +
-                    " m, so stations do not run evenly along the line",
-                {{"vertex", static_cast<double>(i + 1)}});
+      out_.warn(
+          "station-order", {{"vertex", i + 1}},
+          "{}: {}: the station {} m comes after {} m, so stations do not run evenly along the line",
+          name_, line_.place_of(i), format_digits(stations[i], 9),
+          format_digits(stations[i - 1], 9));
       return;
     }
     if (std::abs(reach - length) <= kLikeLength * length) return;
-    out_.warn("line-stations",
-              name_ + ": the stations span " + format_brief(reach) + " m, and the line is " +
-                  format_brief(length) +
-                  " m long, so they may be in another unit; each pose has the station that lies "
-                  "evenly between those of its vertices",
-              {{"stations", reach}, {"length", length}});
+    out_.warn("line-stations", {{"stations", reach}, {"length", length}},
+              "{}: the stations span {} m, and the line is {} m long, so they may be in another "
+              "unit; each pose has the station that lies evenly between those of its vertices",
+              name_, format_brief(reach), format_brief(length));
   }
 
   void remark_slopes() {
@@ -209,11 +201,10 @@ class LineReading {
       most = std::max(most, slope);
     }
     if (!(most > kSteep)) return;
-    out_.warn("line-steep",
-              name_ + ": the line climbs or falls by " + format_brief(100 * most) + " % after " +
-                  vertex_text(steepest) + " (" + line_.place_of(steepest) +
-                  "), which is steep for a vehicle; make sure that z is the height",
-              {{"percent", 100 * most}});
+    out_.warn("line-steep", {{"percent", 100 * most}},
+              "{}: the line climbs or falls by {} % after {} ({}), which is steep for a vehicle; "
+              "make sure that z is the height",
+              name_, format_brief(100 * most), vertex_text(steepest), line_.place_of(steepest));
   }
 
   /// Refuses a line whose curve would be no more than a guess, because it turns too much at a
@@ -227,12 +218,11 @@ class LineReading {
     if (count == 0) return;
     const std::string others =
         count == 1 ? "" : ", and " + counted(count - 1, "other vertex", "other vertices") + " too";
-    refuse(name_,
-           line_.place_of(first) + ": the line turns by " + format_brief(turn(first) / kDegree) +
-               " degrees at " + vertex_text(first) + others + "; expected at most " +
-               format_brief(kMostLineTurn) +
-               ", because a smooth curve through sharper corners leaves the line",
-           Remedy::kRoundCorners);
+    refuse(name_, Remedy::kRoundCorners,
+           "{}: the line turns by {} degrees at {}{}; expected at most {}, because a smooth curve "
+           "through sharper corners leaves the line",
+           line_.place_of(first), format_brief(turn(first) / kDegree), vertex_text(first), others,
+           format_brief(kMostLineTurn));
   }
 
   /// Refuses a line on whose legs the arcs do not fit.
@@ -274,7 +264,7 @@ class LineReading {
               name_ + ": " + counted(out_.arcs, "vertex", "vertices") + " got an arc of radius " +
                   format_brief(radius) + " m, which passes " + vertex_text(at) + " " +
                   format_brief(most) + " m to its inside, the most of all",
-              {{"arcs", static_cast<double>(out_.arcs)}, {"metres", most}});
+              {{"arcs", out_.arcs}, {"metres", most}});
   }
 
   /// Remarks on how far the curve through the vertices leaves the straight legs between them.
@@ -357,11 +347,10 @@ class LineReading {
     }
     if (options_.cant == CantLine::kNone) return;
     if (!options_.rail_distance) {
-      out_.note("cant-rails",
-                name_ +
-                    ": the cant was measured over a distance of 1.5 m between the middles of the "
-                    "rails, as on standard gauge",
-                {{"metres", kUsualRails}});
+      out_.note("cant-rails", {{"metres", kUsualRails}},
+                "{}: the cant was measured over a distance of 1.5 m between the middles of the "
+                "rails, as on standard gauge",
+                name_);
     }
     path.rail_distance = options_.rail_distance.value_or(kUsualRails);
     path.cant_line = options_.cant == CantLine::kFile ? CantLine::kCenter : options_.cant;

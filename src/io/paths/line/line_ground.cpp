@@ -11,8 +11,8 @@
 #include "core/geometry/angle.hpp"
 #include "core/trajectory/line/ground.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/poses_along.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway {
@@ -54,14 +54,13 @@ struct NamedSide {
                                        (side.ground.sparse == 1 ? " has" : " have") +
                                        " too few points: the ground takes points at most " +
                                        format_brief(spacing) + " m apart";
-  refuse(name, "no ground was found under the " + std::string(side.name) + " wheels for " +
-                   format_brief(to.station - from.station) + " m, from " +
-                   format_brief(from.station) + " m along the line (at " + place_text(from) +
-                   ") to " + format_brief(to.station) + " m (at " + place_text(to) +
-                   "); expected gaps of at most " + format_brief(kLongestGroundGap) +
-                   " m. The scan may have a hole there, something may stand on the ground, or the "
-                   "height of the line may be more than 1 m off" +
-                   risen + sparse);
+  refuse(name,
+         "no ground was found under the {} wheels for {} m, from {} m along the line (at {}) to {} "
+         "m (at {}); expected gaps of at most {} m. The scan may have a hole there, something may "
+         "stand on the ground, or the height of the line may be more than 1 m off{}{}",
+         side.name, format_brief(to.station - from.station), format_brief(from.station),
+         place_text(from), format_brief(to.station), place_text(to),
+         format_brief(kLongestGroundGap), risen, sparse);
 }
 
 /// The longest gap between two places with ground, in metres. Refuses one that is too long to be
@@ -105,16 +104,15 @@ void remark_ground(const std::string& name, const LineOptions& options, LineFile
           ? ""
           : "; the longest gap that was bridged is " + format_brief(found.longest_bridged) + " m";
   out.note("on-ground",
-           name + ": height and roll are those of the ground in " +
-               options.ground->path().string() + " under wheels " + format_brief(*options.track) +
-               " m apart, which was found at " + of_all(found.left) +
-               " places on the left and at " + of_all(found.right) + " on the right" + bridged +
-               ". Under a parked car the ground is not seen, so there the path may be about 0.3 m "
-               "too high",
-           {{"left", static_cast<double>(found.left)},
-            {"right", static_cast<double>(found.right)},
-            {"places", static_cast<double>(found.places)},
-            {"longest_bridged", found.longest_bridged}});
+           {{"left", found.left},
+            {"right", found.right},
+            {"places", found.places},
+            {"longest_bridged", found.longest_bridged}},
+           "{}: height and roll are those of the ground in {} under wheels {} m apart, which was "
+           "found at {} places on the left and at {} on the right{}. Under a parked car the ground "
+           "is not seen, so there the path may be about 0.3 m too high",
+           name, options.ground->path().string(), format_brief(*options.track), of_all(found.left),
+           of_all(found.right), bridged);
 }
 
 /// Refuses ground on which no vehicle stands.
@@ -136,14 +134,13 @@ void remark_lean(const std::string& name, const std::vector<CantPoint>& cant, do
       cant, {}, [](const CantPoint& point) { return std::abs(point.cant); });
   if (!(std::abs(worst.cant) > kMostLean * track)) return;
   const double degrees = std::asin(std::abs(worst.cant) / track) / kDegree;
-  out.warn("ground-leans",
-           name + ": on this ground the vehicle leans by up to " + format_brief(degrees) +
-               " degrees, " + format_brief(worst.station) + " m along the line (at " +
-               place_text({worst.station, path.plan.at(worst.station)}) +
-               "), because the ground under its " + (worst.cant > 0 ? "left" : "right") +
-               " wheels is " + format_brief(std::abs(worst.cant)) +
-               " m higher; something such as a parked car may stand there and hide the ground",
-           {{"degrees", degrees}, {"station", worst.station}});
+  out.warn("ground-leans", {{"degrees", degrees}, {"station", worst.station}},
+           "{}: on this ground the vehicle leans by up to {} degrees, {} m along the line (at {}), "
+           "because the ground under its {} wheels is {} m higher; something such as a parked car "
+           "may stand there and hide the ground",
+           name, format_brief(degrees), format_brief(worst.station),
+           place_text({worst.station, path.plan.at(worst.station)}),
+           worst.cant > 0 ? "left" : "right", format_brief(std::abs(worst.cant)));
 }
 
 /// Sets height and cant of a path by the ground under its wheels. places: of the heights on either

@@ -10,8 +10,8 @@
 
 #include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/geographic/geographic_poses.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/length_unit.hpp"
 
 namespace clearway {
@@ -292,13 +292,12 @@ void note_angle_frame(AngleFrame frame, bool geographic, const std::string& name
                       TrajectoryFile& out) {
   const std::string from = geographic ? "true " : "the map's ";
   out.note("angle-frame",
-           name +
-               (frame == AngleFrame::kNed
-                    ? ": angles are a heading clockwise from " + from +
-                          "north, a pitch nose up, and a roll right side down"
-                    : ": angles are a yaw counter-clockwise from " + from +
-                          "east (x), a pitch nose down, and a roll right side down") +
-               "; the model is to have x forward, y left and z up");
+           fmt::format("{}{}; the model is to have x forward, y left and z up", name,
+                       frame == AngleFrame::kNed
+                           ? ": angles are a heading clockwise from " + from +
+                                 "north, a pitch nose up, and a roll right side down"
+                           : ": angles are a yaw counter-clockwise from " + from +
+                                 "east (x), a pitch nose down, and a roll right side down"));
 }
 
 }  // namespace

@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
-#include "io/files/input_error.hpp"
 #include "io/files/xml_text.hpp"
 #include "io/paths/pose_input.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -37,10 +37,9 @@ class E57Xml : public XmlText {
     constexpr std::uint64_t kMostMarkup = std::uint64_t{1} << 21;
     const std::uint64_t most = std::min(kMostBytes, file.pages.size() - file.xml_start);
     if (file.xml_bytes > most) {
-      refuse_byte(name(), 32,
-                  "an XML section of " + std::to_string(file.xml_bytes) + " bytes; expected " +
-                      (file.xml_bytes > kMostBytes ? "at most " + std::to_string(kMostBytes)
-                                                   : "it to end before the file"));
+      refuse_byte(name(), 32, "an XML section of {} bytes; expected {}", file.xml_bytes,
+                  file.xml_bytes > kMostBytes ? "at most " + std::to_string(kMostBytes)
+                                              : "it to end before the file");
     }
     std::vector<char> bytes(file.xml_bytes);
     file.pages.read(file.xml_start, std::as_writable_bytes(std::span(bytes)), "the XML section");
@@ -117,8 +116,8 @@ E57Field integer_field(const E57Xml& xml, pugi::xml_node node, bool scaled) {
   field.minimum = xml.number_attribute<std::int64_t>(node, "minimum").value_or(Limits::min());
   const auto maximum = xml.number_attribute<std::int64_t>(node, "maximum").value_or(Limits::max());
   if (maximum < field.minimum) {
-    xml.refuse_at(node, "goes from " + std::to_string(field.minimum) + " to " +
-                            std::to_string(maximum) + "; expected minimum <= maximum");
+    xml.refuse_at(node, fmt::format("goes from {} to {}; expected minimum <= maximum",
+                                    field.minimum, maximum));
   }
   field.bits = static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(maximum) -
                                                     static_cast<std::uint64_t>(field.minimum)));
@@ -177,9 +176,9 @@ void check_complete(const E57Xml& xml, pugi::xml_node prototype, const E57Scan& 
   if (!scan.has(first) && !scan.has(second) && !scan.has(third)) return;
   for (const E57Place place : {first, second, third}) {
     if (scan.has(place)) continue;
-    xml.refuse_at(prototype, "has no " + std::string(kPlaceNames[place]) + " beside " +
-                                 std::string(kPlaceNames[first]) +
-                                 " or its like; expected all three coordinates");
+    xml.refuse_at(prototype,
+                  fmt::format("has no {} beside {} or its like; expected all three coordinates",
+                              kPlaceNames[place], kPlaceNames[first]));
   }
 }
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 
 #if defined(__x86_64__)
 #include <nmmintrin.h>
@@ -88,9 +88,8 @@ std::optional<std::uint64_t> E57Pages::logical(std::uint64_t physical) const {
 void E57Pages::read(std::uint64_t at, std::span<std::byte> out, const char* what) {
   if (at > size() || out.size() > size() - at) {
     refuse_byte(name(), physical(at),
-                std::string(what) + " of " + std::to_string(out.size()) +
-                    " bytes; expected it to end before the file, which has " +
-                    std::to_string(pages_ * page_) + " bytes");
+                "{} of {} bytes; expected it to end before the file, which has {} bytes", what,
+                out.size(), pages_ * page_);
   }
   while (!out.empty()) {
     const std::size_t start = at % content_;
@@ -141,25 +140,20 @@ void check_header(const File& file, const std::byte* header) {
   }
   const auto major = load<std::uint32_t>(header + 8), minor = load<std::uint32_t>(header + 12);
   if (major != 1 || minor != 0) {
-    refuse_byte(name, 8,
-                "E57 version " + std::to_string(major) + "." + std::to_string(minor) +
-                    "; expected 1.0. Export the scan as E57 1.0, LAS or PLY");
+    refuse_byte(name, 8, "E57 version {}.{}; expected 1.0. Export the scan as E57 1.0, LAS or PLY",
+                major, minor);
   }
   const std::uint64_t page = number(40), declared = number(16), size = file.size_bytes();
   if (!std::has_single_bit(page) || page < kLeastPage || page > kLargestPage) {
-    refuse_byte(name, 40,
-                "pages of " + std::to_string(page) +
-                    " bytes; expected 1024, or another power of two from " +
-                    std::to_string(kLeastPage) + " to " + std::to_string(kLargestPage));
+    refuse_byte(name, 40, "pages of {} bytes; expected 1024, or another power of two from {} to {}",
+                page, kLeastPage, kLargestPage);
   }
   if (size != declared) {
     refuse(name, "has " + std::to_string(size) + " bytes; expected " + std::to_string(declared) +
                      " as its header says. Copy or export the file again");
   }
   if (size % page != 0) {
-    refuse_byte(name, 16,
-                "a file of " + std::to_string(size) + " bytes; expected whole pages of " +
-                    std::to_string(page) + " bytes");
+    refuse_byte(name, 16, "a file of {} bytes; expected whole pages of {} bytes", size, page);
   }
 }
 
@@ -168,9 +162,8 @@ void check_header(const File& file, const std::byte* header) {
 E57Container open_e57(File file) {
   std::array<std::byte, kE57HeaderBytes> header;
   if (file.size_bytes() < header.size()) {
-    refuse(file.name(), "ends at byte " + std::to_string(file.size_bytes()) +
-                            "; expected an E57 header of " + std::to_string(header.size()) +
-                            " bytes");
+    refuse(file.name(), "ends at byte {}; expected an E57 header of {} bytes", file.size_bytes(),
+           header.size());
   }
   file.read_at(0, header);
   check_header(file, header.data());

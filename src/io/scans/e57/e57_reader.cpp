@@ -10,13 +10,12 @@
 #include <vector>
 
 #include "clearway/progress.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/scans/cut_off.hpp"
 #include "io/scans/declared_box.hpp"
 #include "io/scans/e57/e57_file.hpp"
 #include "io/scans/e57/e57_scan_reader.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/scan_crs.hpp"
 
 namespace clearway {
@@ -50,34 +49,28 @@ class E57Remarks {
 
   std::vector<Message> messages() const {
     std::vector<Message> all;
-    using Number = std::pair<const char*, std::uint64_t>;
-    const auto note = [&](const std::string& text, const Number& first, const Number& second) {
-      MessageNumbers numbers;
-      for (const auto& [name, number] : {first, second}) {
-        numbers.emplace_back(name, static_cast<double>(number));
-      }
+    const auto note = [&](const std::string& text, MessageNumbers numbers) {
       all.push_back(plain_note(file_ + ": " + text, std::move(numbers)));
     };
     const auto scans = [](std::uint64_t count) { return counted(count, "scan"); };
-    const Number total{"scans", scans_};
     if (scans_ > 1 || posed_ > 0) {
       note(scans(scans_) + (posed_ == 0   ? "; none has a pose"
                             : posed_ == 1 ? "; 1 pose is applied"
                                           : "; " + format_count(posed_) + " poses are applied"),
-           total, {"poses", posed_});
+           {{"scans", scans_}, {"poses", posed_}});
     }
     if (empty_ > 0) {
-      note(scans(empty_) + " without points, of " + format_count(scans_), {"empty_scans", empty_},
-           total);
+      note(scans(empty_) + " without points, of " + format_count(scans_),
+           {{"empty_scans", empty_}, {"scans", scans_}});
     }
     if (without_coordinates_ > 0) {
       note(scans(without_coordinates_) + " without coordinates, of " + format_count(scans_) +
                "; their records are not counted",
-           {"scans_without_coordinates", without_coordinates_}, total);
+           {{"scans_without_coordinates", without_coordinates_}, {"scans", scans_}});
     }
     if (absent_ > 0) {
       note(format_count(absent_) + " of " + format_count(records_) + " records have no valid point",
-           {"absent", absent_}, {"records", records_});
+           {{"absent", absent_}, {"records", records_}});
     }
     const std::vector<Message> bounds = bounds_.messages();
     all.insert(all.end(), bounds.begin(), bounds.end());
@@ -124,20 +117,18 @@ void refuse_points_from_nothing(const std::string& name, const std::vector<E57Sc
     if (!scan.takes_no_bytes()) continue;
     if (scan.records > PointReader::kBatchPoints - records) {
       refuse_byte(name, scan.file_offset,
-                  scan.name() + " has " + std::to_string(scan.records) +
-                      " records that take no byte; expected at most " +
-                      std::to_string(PointReader::kBatchPoints) + " of them in a file");
+                  "{} has {} records that take no byte; expected at most {} of them in a file",
+                  scan.name(), scan.records, PointReader::kBatchPoints);
     }
     records += scan.records;
   }
 }
 
 Message foot_warning(const std::string& name) {
-  return warning(
-      "e57-unit",
-      name +
-          ": its coordinate reference system is in feet, but lengths in E57 are metres by the "
-          "standard. They are taken for feet: check them");
+  return warning("e57-unit",
+                 fmt::format("{}: its coordinate reference system is in feet, but lengths in E57 "
+                             "are metres by the standard. They are taken for feet: check them",
+                             name));
 }
 
 class E57Reader final : public PointReader {

@@ -13,8 +13,8 @@
 #include "core/geometry/predicate.hpp"
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/pose_input.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -22,8 +22,10 @@ namespace {
 constexpr std::size_t kSectionHeaderBytes = 32;
 
 /// Throws InputError about a scan, at the place of its points.
-[[noreturn]] void refuse_scan(const E57Pages& pages, const E57Scan& scan, const std::string& what) {
-  refuse_byte(pages.name(), scan.file_offset, scan.name() + what);
+template <typename... Args>
+[[noreturn]] void refuse_scan(const E57Pages& pages, const E57Scan& scan,
+                              fmt::format_string<const Args&...> what, const Args&... args) {
+  refuse_byte(pages.name(), scan.file_offset, scan.name() + fmt::format(what, args...));
 }
 
 /// Throws InputError where the packets are too small to hold the bits of every record.
@@ -33,9 +35,8 @@ void check_room(const E57Pages& pages, const E57Scan& scan, const E57Extent& ext
   for (const E57Field& field : scan.fields) {
     needed += field.bytes_of(scan.records);
     if (needed <= room) continue;
-    refuse_scan(pages, scan,
-                " has packets of " + std::to_string(room) + " bytes; expected more for its " +
-                    std::to_string(scan.records) + " records");
+    refuse_scan(pages, scan, " has packets of {} bytes; expected more for its {} records", room,
+                scan.records);
   }
 }
 
@@ -54,15 +55,15 @@ E57Extent find_e57_section(E57Pages& pages, const E57Scan& scan) {
   pages.read(*start, header, "the header of a scan's points");
   const auto id = load<std::uint8_t>(header.data());
   if (id != 1) {
-    refuse_scan(
-        pages, scan,
-        " has a binary section of kind " + std::to_string(id) + "; expected 1, compressed vectors");
+    refuse_scan(pages, scan, " has a binary section of kind {}; expected 1, compressed vectors",
+                id);
   }
   const auto length = load<std::uint64_t>(header.data() + 8);
   if (length < kSectionHeaderBytes || length > pages.size() - *start || length % 4 != 0) {
-    refuse_scan(pages, scan,
-                " has a binary section of " + std::to_string(length) +
-                    " bytes; expected a multiple of 4 that ends before the file");
+    refuse_scan(
+        pages, scan,
+        " has a binary section of {} bytes; expected a multiple of 4 that ends before the file",
+        length);
   }
   const std::uint64_t end = *start + length;
   const auto offset = load<std::uint64_t>(header.data() + 16);
@@ -71,8 +72,7 @@ E57Extent find_e57_section(E57Pages& pages, const E57Scan& scan) {
     packets = end;  // there are no packets to point to
   } else if (!packets || *packets < *start + kSectionHeaderBytes || *packets >= end) {
     refuse_scan(pages, scan,
-                " has its first packet at byte " + std::to_string(offset) +
-                    "; expected a place within its section");
+                " has its first packet at byte {}; expected a place within its section", offset);
   }
   const E57Extent extent{*start, *packets, end};
   check_room(pages, scan, extent);
@@ -150,10 +150,8 @@ class E57Packets {
       // bits.
       const std::uint64_t padding = field.kind == E57Field::Kind::kInteger ? 7 : 0;
       if (totals_[i] >= expected && totals_[i] - expected <= padding) continue;
-      refuse_scan(pages_, scan_,
-                  " has " + std::to_string(totals_[i]) + " bytes in bytestream " +
-                      std::to_string(i + 1) + "; expected " + std::to_string(expected) +
-                      " for its " + std::to_string(scan_.records) + " records");
+      refuse_scan(pages_, scan_, " has {} bytes in bytestream {}; expected {} for its {} records",
+                  totals_[i], i + 1, expected, scan_.records);
     }
   }
 
@@ -382,8 +380,7 @@ class FieldsReader final : public E57ScanReader {
 
   /// Throws InputError about a record. i: its number among those that were decoded last.
   [[noreturn]] void refuse_record(std::size_t i, const std::string& what) const {
-    refuse_scan(pages_, scan_,
-                ", record " + std::to_string(next_ + i) + " (counted from 0)" + what);
+    refuse_scan(pages_, scan_, ", record {} (counted from 0){}", next_ + i, what);
   }
 
   /// Number of records for which every field has data, at least one and at most `room`.
@@ -393,9 +390,7 @@ class FieldsReader final : public E57ScanReader {
       if (!cursor) continue;
       while (cursor->available() == 0) {
         if (cursor->refill()) continue;
-        refuse_scan(pages_, scan_,
-                    " ends after " + std::to_string(next_) + " records; expected " +
-                        std::to_string(scan_.records));
+        refuse_scan(pages_, scan_, " ends after {} records; expected {}", next_, scan_.records);
       }
       count = std::min(count, cursor->available());
     }
@@ -487,9 +482,10 @@ class FieldsReader final : public E57ScanReader {
       while (cursor->refill()) {
       }
       if (!cursor->holds_more()) continue;
-      refuse_scan(pages_, scan_,
-                  " goes on behind its last record; expected " + std::to_string(scan_.records) +
-                      " records and zeros up to the next word");
+      refuse_scan(
+          pages_, scan_,
+          " goes on behind its last record; expected {} records and zeros up to the next word",
+          scan_.records);
     }
     finished_ = true;
   }

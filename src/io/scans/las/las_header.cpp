@@ -12,8 +12,8 @@
 
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
 #include "io/scans/declared_box.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -28,8 +28,7 @@ constexpr unsigned kFormatBits = 0x3F;
 
 std::span<const std::byte> take_header(InputBuffer& input, std::size_t bytes) {
   const auto taken = input.take(bytes);
-  if (taken.empty())
-    refuse_cut_las(input, "a LAS header of at least " + std::to_string(bytes) + " bytes");
+  if (taken.empty()) refuse_cut_las(input, fmt::format("a LAS header of at least {} bytes", bytes));
   return taken;
 }
 
@@ -41,9 +40,7 @@ void check_kind(const InputBuffer& input, const std::byte* header) {
   const unsigned major = load<std::uint8_t>(header + 24);
   const unsigned minor = load<std::uint8_t>(header + 25);
   if (major != 1 || minor > 4) {
-    refuse_byte(input.name(), 24,
-                "version " + std::to_string(major) + "." + std::to_string(minor) +
-                    "; expected LAS 1.0 to 1.4");
+    refuse_byte(input.name(), 24, "version {}.{}; expected LAS 1.0 to 1.4", major, minor);
   }
   const unsigned format = load<std::uint8_t>(header + 104) & kFormatBits;
   if ((load<std::uint8_t>(header + 104) & ~kFormatBits) == 0xC0u) {
@@ -57,9 +54,8 @@ void check_kind(const InputBuffer& input, const std::byte* header) {
   const unsigned record = load<std::uint16_t>(header + 105);
   if (record < kSmallestRecord[format]) {
     refuse_byte(input.name(), 105,
-                "point records of " + std::to_string(record) + " bytes; expected at least " +
-                    std::to_string(kSmallestRecord[format]) + " for point format " +
-                    std::to_string(format));
+                "point records of {} bytes; expected at least {} for point format {}", record,
+                kSmallestRecord[format], format);
   }
 }
 
@@ -72,14 +68,12 @@ Quantisation read_quantisation(const InputBuffer& input, const std::byte* header
     result.offset[axis] = load<double>(header + offset_byte);
     const std::string name(1, static_cast<char>('x' + axis));
     if (!std::isfinite(result.scale[axis]) || result.scale[axis] <= 0) {
-      refuse_byte(
-          input.name(), scale_byte,
-          name + " scale is " + format_number(result.scale[axis]) + "; expected a positive number");
+      refuse_byte(input.name(), scale_byte, "{} scale is {}; expected a positive number", name,
+                  format_number(result.scale[axis]));
     }
     if (!std::isfinite(result.offset[axis])) {
-      refuse_byte(
-          input.name(), offset_byte,
-          name + " offset is " + format_number(result.offset[axis]) + "; expected a finite number");
+      refuse_byte(input.name(), offset_byte, "{} offset is {}; expected a finite number", name,
+                  format_number(result.offset[axis]));
     }
   }
   return result;
@@ -128,16 +122,14 @@ void read_version_14(const InputBuffer& input, std::span<const std::byte> rest,
 void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
   if (header.points_offset < header.header_bytes) {
     refuse_byte(input.name(), 96,
-                "points start at byte " + std::to_string(header.points_offset) +
-                    "; expected them behind the header of " + std::to_string(header.header_bytes) +
-                    " bytes");
+                "points start at byte {}; expected them behind the header of {} bytes",
+                header.points_offset, header.header_bytes);
   }
   if (header.compressed) return;  // the chunk table says where the points are
   const std::uint64_t room = std::numeric_limits<std::int64_t>::max() - header.points_offset;
   if (header.points > room / header.record_bytes) {
-    refuse(input.name(), "declares " + std::to_string(header.points) + " points of " +
-                             std::to_string(header.record_bytes) +
-                             " bytes; expected a count that a file can hold");
+    refuse(input.name(), "declares {} points of {} bytes; expected a count that a file can hold",
+           header.points, header.record_bytes);
   }
   if (header.tail_count > 0 && header.tail_offset < header.points_end()) {
     refuse(input.name(), "extended variable length records start at byte " +
@@ -146,19 +138,17 @@ void check_layout(const InputBuffer& input, const LasPublicHeader& header) {
                              std::to_string(header.points_end()));
   }
   if (input.size() && *input.size() < header.points_end()) {
-    refuse(input.name(), "ends at byte " + std::to_string(*input.size()) + "; expected " +
-                             std::to_string(header.points_end()) + " bytes for " +
-                             std::to_string(header.points) + " points of " +
-                             std::to_string(header.record_bytes) + " bytes from byte " +
-                             std::to_string(header.points_offset));
+    refuse(input.name(),
+           "ends at byte {}; expected {} bytes for {} points of {} bytes from byte {}",
+           *input.size(), header.points_end(), header.points, header.record_bytes,
+           header.points_offset);
   }
 }
 
 }  // namespace
 
 void refuse_cut_las(const InputBuffer& input, const std::string& expected) {
-  refuse(input.name(),
-         "ends at byte " + std::to_string(input.end_position()) + "; expected " + expected);
+  refuse(input.name(), "ends at byte {}; expected {}", input.end_position(), expected);
 }
 
 std::uint64_t LasPublicHeader::points_end() const { return points_offset + points * record_bytes; }
@@ -184,9 +174,8 @@ LasPublicHeader read_las_header(InputBuffer& input) {
 
   const std::size_t least = minor == 4 ? kHeaderBytes14 : kHeaderBytes10;
   if (header.header_bytes < least) {
-    refuse_byte(input.name(), 94,
-                "header of " + std::to_string(header.header_bytes) + " bytes; expected at least " +
-                    std::to_string(least) + " for LAS 1." + std::to_string(minor));
+    refuse_byte(input.name(), 94, "header of {} bytes; expected at least {} for LAS 1.{}",
+                header.header_bytes, least, minor);
   }
   if (minor == 4) {
     read_version_14(input, take_header(input, kHeaderBytes14 - kHeaderBytes10), header);

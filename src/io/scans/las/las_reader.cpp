@@ -8,10 +8,9 @@
 
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/las/las_records.hpp"
 #include "io/scans/laz/laz_reader.hpp"
@@ -156,10 +155,9 @@ class LasReader final : public PointReader {
     if (bytes % header_.record_bytes == 0) return;
     if (header_.tail_count > 0 && bytes < header_.record_bytes) return;
     refuse(input_.name(),
-           "has " + counted(bytes, "byte") + " more behind its " + std::to_string(header_.points) +
-               " points, which end at byte " + std::to_string(header_.points_end()) +
-               "; expected whole records of " + std::to_string(header_.record_bytes) +
-               " bytes or none. The file is damaged: copy or export it again");
+           "has {} more behind its {} points, which end at byte {}; expected whole records of {} "
+           "bytes or none. The file is damaged: copy or export it again",
+           counted(bytes, "byte"), header_.points, header_.points_end(), header_.record_bytes);
   }
 
   void refuse_surplus() const {
@@ -167,23 +165,18 @@ class LasReader final : public PointReader {
     check_surplus(end);
     const std::uint64_t more = surplus(end);
     if (more == 0) return;
-    refuse(input_.name(),
-           "declares " + std::to_string(header_.points) + " points, but holds " +
-               std::to_string(header_.points + more) + " records of " +
-               std::to_string(header_.record_bytes) + " bytes before byte " + std::to_string(end) +
-               "; expected as many as declared. " + kWhyMore +
-               ". As standard input all of them are read",
-           Remedy::kStandardInput);
+    refuse(input_.name(), Remedy::kStandardInput,
+           "declares {} points, but holds {} records of {} bytes before byte {}; expected as many "
+           "as declared. {}. As standard input all of them are read",
+           header_.points, header_.points + more, header_.record_bytes, end, kWhyMore);
   }
 
   std::span<const std::byte> take_records(std::size_t records) {
     const auto bytes = input_.take(records * header_.record_bytes);
     if (!bytes.empty()) return bytes;
     const std::uint64_t end = input_.end_position();
-    refuse(input_.name(), "ends at byte " + std::to_string(end) + ", within point " +
-                              std::to_string((end - header_.points_offset) / header_.record_bytes) +
-                              " of " + std::to_string(points_) + "; expected " +
-                              std::to_string(header_.points_end()) + " bytes");
+    refuse(input_.name(), "ends at byte {}, within point {} of {}; expected {} bytes", end,
+           (end - header_.points_offset) / header_.record_bytes, points_, header_.points_end());
   }
 
   /// Takes records of a stream after the last one that its header declares.
@@ -228,13 +221,10 @@ class LasReader final : public PointReader {
     tail_read_ = true;
     if (points_ == header_.points) return;
     if (feeds_.are_all_pairs()) refuse_text_copy(input_.name());
-    info_.remarks.push_back(warning("las-count",
-                                    input_.name() + ": its header declares " +
-                                        std::to_string(header_.points) + " points, but " +
-                                        std::to_string(points_) + " came before its end. " +
-                                        kWhyMore + ". All of them were read",
-                                    {{"declared", static_cast<double>(header_.points)},
-                                     {"read", static_cast<double>(points_)}}));
+    info_.remarks.push_back(warning(
+        "las-count", {{"declared", header_.points}, {"read", points_}},
+        "{}: its header declares {} points, but {} came before its end. {}. All of them were read",
+        input_.name(), header_.points, points_, kWhyMore));
   }
 
   InputBuffer input_;

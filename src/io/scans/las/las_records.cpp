@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/las/las_header.hpp"
 #include "io/scans/scan_crs.hpp"
 
@@ -148,9 +148,8 @@ void read_las_vlrs(InputBuffer& input, const LasPublicHeader& header, LasRecords
     const std::size_t length = load<std::uint16_t>(head.data() + 20);
     if (length > room - kVlrHeaderBytes) {
       refuse_byte(input.name(), start,
-                  which + " has " + std::to_string(length) +
-                      " bytes; expected it to end before the " + "points at byte " +
-                      std::to_string(header.points_offset));
+                  "{} has {} bytes; expected it to end before the points at byte {}", which, length,
+                  header.points_offset);
     }
     const auto payload = input.take(length);
     if (payload.size() != length) refuse_cut_las(input, which);
@@ -172,9 +171,8 @@ void read_las_tail(InputBuffer& input, const LasPublicHeader& header, LasCrs& cr
   }
   for (std::uint32_t i = 0; i < header.tail_count; ++i) {
     const std::uint64_t start = input.position();
-    const std::string which = "extended variable length record " + std::to_string(i + 1) + " of " +
-                              std::to_string(header.tail_count) + " from byte " +
-                              std::to_string(start);
+    const std::string which = fmt::format("extended variable length record {} of {} from byte {}",
+                                          i + 1, header.tail_count, start);
     const auto head = input.take(kEvlrHeaderBytes);
     if (head.empty()) refuse_cut_las(input, which);
     const std::string user(padded_text(head.subspan(2, 16)));

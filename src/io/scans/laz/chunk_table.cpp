@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/laz/coding/entropy_models.hpp"
 
 namespace clearway::laz {
@@ -25,9 +25,8 @@ Number number_at(const InputBuffer& input, std::uint64_t position) {
 std::optional<std::uint64_t> find_table(const InputBuffer& input, const PointBytes& bytes) {
   const std::uint64_t first_chunk = bytes.begin + kPointerBytes;
   if (bytes.end < first_chunk) {
-    refuse(input.name(), "ends at byte " + std::to_string(bytes.end) +
-                             "; expected the place of its chunk table at byte " +
-                             std::to_string(bytes.begin));
+    refuse(input.name(), "ends at byte {}; expected the place of its chunk table at byte {}",
+           bytes.end, bytes.begin);
   }
   auto table = number_at<std::uint64_t>(input, bytes.begin);
   // The table was not written, because the writer was interrupted.
@@ -85,11 +84,10 @@ std::string chunk_of(std::uint64_t index, std::uint64_t count) {
 
 [[noreturn]] void refuse_count(const InputBuffer& input, std::uint64_t table_points, bool at_least,
                                std::uint64_t header_points) {
-  refuse(input.name(), "its chunk table has " + std::string(at_least ? "at least " : "") +
-                           std::to_string(table_points) + " points; expected " +
-                           std::to_string(header_points) +
-                           " as its header says. Its writer was interrupted, or wrote into a "
-                           "pipe: write the file again");
+  refuse(input.name(),
+         "its chunk table has {}{} points; expected {} as its header says. Its writer was "
+         "interrupted, or wrote into a pipe: write the file again",
+         at_least ? "at least " : "", table_points, header_points);
 }
 
 std::vector<Chunk> read_entries(const InputBuffer& input, const Scheme& scheme,
@@ -106,11 +104,10 @@ std::vector<Chunk> read_entries(const InputBuffer& input, const Scheme& scheme,
           static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_points, bytes.points - points));
     }
     if (chunk_bytes < scheme.record_bytes || chunk_bytes > table - position || chunk_points == 0) {
-      refuse(input.name(), chunk_of(i, count) + " has " + std::to_string(chunk_points) +
-                               " points in " + std::to_string(chunk_bytes) + " bytes from byte " +
-                               std::to_string(position) + "; expected at least one, in " +
-                               std::to_string(scheme.record_bytes) + " bytes or more that end " +
-                               "before the chunk table at byte " + std::to_string(table));
+      refuse(input.name(),
+             "{} has {} points in {} bytes from byte {}; expected at least one, in {} bytes or "
+             "more that end before the chunk table at byte {}",
+             chunk_of(i, count), chunk_points, chunk_bytes, position, scheme.record_bytes, table);
     }
     points += chunk_points;
     if (points > bytes.points) refuse_count(input, points, i + 1 < count, bytes.points);

@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway::laz {
 namespace {
@@ -56,8 +56,7 @@ struct Page {
 std::vector<Box> read_copc_cubes(const InputBuffer& input, std::span<const std::byte> info,
                                  std::span<const Chunk> chunks) {
   if (info.size() < kInfoBytes) {
-    refuse_hierarchy(input,
-                     "its record has " + std::to_string(info.size()) + " bytes, expected 160");
+    refuse_hierarchy(input, fmt::format("its record has {} bytes, expected 160", info.size()));
   }
   const Root root(info);
   if (!root.is_sound()) refuse_hierarchy(input, "expected a cube of finite size above 0");
@@ -76,8 +75,7 @@ std::vector<Box> read_copc_cubes(const InputBuffer& input, std::span<const std::
     const std::uint64_t size = *input.size();
     if (most_pages-- == 0 || page.bytes % kEntryBytes != 0 || page.begin > size ||
         page.bytes > size - page.begin) {
-      refuse_hierarchy(input, "a page of " + std::to_string(page.bytes) + " bytes at byte " +
-                                  std::to_string(page.begin));
+      refuse_hierarchy(input, fmt::format("a page of {} bytes at byte {}", page.bytes, page.begin));
     }
     for (std::uint64_t at = 0; at < page.bytes; at += kEntryBytes) {
       std::array<std::byte, kEntryBytes> entry;

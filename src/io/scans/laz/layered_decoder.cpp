@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "io/files/bytes.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/laz/chunk_decoder.hpp"
 #include "io/scans/laz/items/point14.hpp"
 
@@ -62,8 +63,7 @@ class LayeredDecoder final : public ChunkDecoder {
     const std::uint64_t start = head.position(cursor);
     end_ = start + bytes;
     if (end_ > chunk.end) {
-      throw DamagedChunk{"its layers have " + std::to_string(end_ - chunk.end) +
-                         " bytes more than it"};
+      throw DamagedChunk{fmt::format("its layers have {} bytes more than it", end_ - chunk.end)};
     }
     if (chunk.ends_there && end_ != chunk.end) throw unused_bytes(chunk.end - end_);
     const bool wanted[] = {true, true, true, scheme_.with_flags, scheme_.with_times};

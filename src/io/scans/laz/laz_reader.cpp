@@ -10,10 +10,9 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/parallel_loop.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/laz/chunk_table.hpp"
 #include "io/scans/laz/copc_hierarchy.hpp"
 
@@ -250,19 +249,17 @@ class LazReader final : public PointReader {
                           scheme_.chunks != Scheme::Chunks::kNone;
     if (is_table) return;
     refuse(input_.name(),
-           "has " + std::to_string(left) + " bytes behind the " + std::to_string(bytes_.points) +
-               " points that its header declares, from byte " + std::to_string(position_) +
-               "; expected no more points. Its writer was interrupted, or wrote "
-               "into a pipe: write the file again");
+           "has {} bytes behind the {} points that its header declares, from byte {}; expected no "
+           "more points. Its writer was interrupted, or wrote into a pipe: write the file again",
+           left, bytes_.points, position_);
   }
 
   [[noreturn]] void refuse_chunk(std::uint64_t index, const laz::DamagedChunk& damage) const {
     refuse(input_.name(),
-           "chunk " + std::to_string(index + 1) +
-               (has_table_ ? " of " + std::to_string(chunks_.size()) : std::string()) + ": " +
-               damage.what +
-               "; expected compressed points as a LAZ writer leaves them. The file was cut or "
-               "damaged: copy it again");
+           "chunk {}{}: {}; expected compressed points as a LAZ writer leaves them. The file was "
+           "cut or damaged: copy it again",
+           index + 1, has_table_ ? " of " + std::to_string(chunks_.size()) : std::string(),
+           damage.what);
   }
 
   InputBuffer input_;

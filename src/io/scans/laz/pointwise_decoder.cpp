@@ -40,10 +40,10 @@ class Item {
 class OtherItems {
  public:
   explicit OtherItems(const Scheme& scheme)
-      : gps_time_(scheme.gps_time_version),
-        rgb_(scheme.rgb_version),
-        wave_packet_(scheme.wave_packet_version),
-        bytes_(scheme.bytes_version, scheme.bytes) {}
+      : gps_time_(scheme.versions[Scheme::kGpsTime]),
+        rgb_(scheme.versions[Scheme::kRgb]),
+        wave_packet_(scheme.versions[Scheme::kWavePacket]),
+        bytes_(scheme.versions[Scheme::kBytes], scheme.bytes) {}
 
   void begin(double time) {
     gps_time_.begin(time);
@@ -134,7 +134,8 @@ class PointwiseDecoder final : public ChunkDecoder {
 }  // namespace
 
 std::unique_ptr<ChunkDecoder> make_pointwise_decoder(const Scheme& scheme) {
-  if (scheme.point_version == 1) return std::make_unique<PointwiseDecoder<Point10Version1>>(scheme);
+  if (scheme.versions[Scheme::kPoint] == 1)
+    return std::make_unique<PointwiseDecoder<Point10Version1>>(scheme);
   return std::make_unique<PointwiseDecoder<Point10Version2>>(scheme);
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -46,8 +46,7 @@ void LzfStream::skip(std::uint64_t count) {
 void LzfStream::check_end() {
   if (at_end()) return;
   refuse_byte(file_->name(), input_position_ - input_.size() + input_next_,
-              "more compressed data than the " + std::to_string(promised_) +
-                  " bytes of points need; expected its end");
+              "more compressed data than the {} bytes of points need; expected its end", promised_);
 }
 
 unsigned LzfStream::input_byte() {

@@ -1,13 +1,14 @@
 #include "io/scans/pcd/pcd_header.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/text_table.hpp"
 
 namespace clearway {
@@ -16,14 +17,6 @@ namespace {
 constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
 constexpr std::uint64_t kLargestPoint = std::uint64_t{1} << 16;   // bytes
 constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;                // greatest WIDTH and HEIGHT
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return lower;
-}
 
 class HeaderParser {
  public:
@@ -108,8 +101,7 @@ class HeaderParser {
     }
     const std::uint64_t value = whole(word);
     if (key == "COUNT") {
-      if (value > kLargestPoint)
-        fail("COUNT " + std::to_string(value) + "; expected at most 65536");
+      if (value > kLargestPoint) fail(fmt::format("COUNT {}; expected at most 65536", value));
       field.count = value;
     } else if (value == 1 || value == 2 || value == 4 || value == 8) {
       field.size = value;
@@ -218,20 +210,12 @@ std::uint64_t PcdHeader::point_bytes(bool with_padding) const {
 PcdHeader read_pcd_header(InputBuffer& input) { return HeaderParser(input).parse(); }
 
 PcdLoad load_of(const PcdField& field) {
-  switch (field.size) {
-    case 1:
-      return field.type == 'I' ? load_double<std::int8_t> : load_double<std::uint8_t>;
-    case 2:
-      return field.type == 'I' ? load_double<std::int16_t> : load_double<std::uint16_t>;
-    case 4:
-      return field.type == 'I'   ? load_double<std::int32_t>
-             : field.type == 'U' ? load_double<std::uint32_t>
-                                 : load_double<float>;
-    default:
-      return field.type == 'I'   ? load_double<std::int64_t>
-             : field.type == 'U' ? load_double<std::uint64_t>
-                                 : load_double<double>;
-  }
+  constexpr PcdLoad kLoads[][3] = {
+      {load_double<std::int8_t>, load_double<std::uint8_t>, load_double<std::uint8_t>},
+      {load_double<std::int16_t>, load_double<std::uint16_t>, load_double<std::uint16_t>},
+      {load_double<std::int32_t>, load_double<std::uint32_t>, load_double<float>},
+      {load_double<std::int64_t>, load_double<std::uint64_t>, load_double<double>}};
+  return kLoads[std::bit_width(field.size) - 1][field.type == 'I' ? 0 : field.type == 'U' ? 1 : 2];
 }
 
 }  // namespace clearway

@@ -9,11 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/pcd/lzf_stream.hpp"
 #include "io/scans/pcd/pcd_header.hpp"
 #include "io/scans/text/point_blocks.hpp"
@@ -36,12 +35,11 @@ std::optional<Message> remark_on_viewpoint(const std::array<double, 7>& viewpoin
   }
   return warning(
       "pcd-viewpoint",
-      name + ": its VIEWPOINT lies at (" + format_digits(viewpoint[0], 9) + ", " +
-          format_digits(viewpoint[1], 9) + ", " + format_digits(viewpoint[2], 9) + "), turned by " +
-          format_digits(degrees, 9) +
-          " degrees. It is not applied: PCL defines it as the place of the sensor. If the points "
-          "are in the sensor's frame, apply it first, for example with "
-          "pcl_transform_from_viewpoint",
+      fmt::format("{}: its VIEWPOINT lies at ({}, {}, {}), turned by {} degrees. It is not "
+                  "applied: PCL defines it as the place of the sensor. If the points are in the "
+                  "sensor's frame, apply it first, for example with pcl_transform_from_viewpoint",
+                  name, format_digits(viewpoint[0], 9), format_digits(viewpoint[1], 9),
+                  format_digits(viewpoint[2], 9), format_digits(degrees, 9)),
       {{"x", viewpoint[0]}, {"y", viewpoint[1]}, {"z", viewpoint[2]}, {"degrees", degrees}});
 }
 
@@ -153,9 +151,8 @@ class AsciiPcdReader final : public PcdBodyReader {
   void check_room() const {
     const std::uint64_t room = *input_.size() - input_.position() + 1;
     if (header_.points <= room / (2 * words_of_point_)) return;
-    refuse(input_.name(), "ends at byte " + std::to_string(*input_.size()) + "; expected " +
-                              std::to_string(header_.points) + " points of " +
-                              std::to_string(words_of_point_) + " numbers");
+    refuse(input_.name(), "ends at byte {}; expected {} points of {} numbers", *input_.size(),
+           header_.points, words_of_point_);
   }
 
   void read_points(std::span<Vec3> out) override {
@@ -221,10 +218,8 @@ class BinaryPcdReader final : public PcdBodyReader {
     refuse_seven_bits(input_);
     const std::uint64_t room = *input_.size() - input_.position();
     if (header_.points > room / stride_) {
-      refuse(input_.name(), "ends at byte " + std::to_string(*input_.size()) + ", within point " +
-                                std::to_string(room / stride_) + " of " +
-                                std::to_string(header_.points) + "; expected " +
-                                std::to_string(stride_) + " bytes for each");
+      refuse(input_.name(), "ends at byte {}, within point {} of {}; expected {} bytes for each",
+             *input_.size(), room / stride_, header_.points, stride_);
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const std::size_t field = header_.coordinates[axis];
@@ -280,9 +275,8 @@ class CompressedPcdReader final : public PcdBodyReader {
     }
     const std::uint64_t bytes = header_.point_bytes(false);
     if (decoded_bytes_ % bytes != 0 || decoded_bytes_ / bytes != header_.points) {
-      refuse(input_.name(), "compressed data of " + std::to_string(decoded_bytes_) + " bytes for " +
-                                std::to_string(header_.points) + " points; expected " +
-                                std::to_string(bytes) + " bytes for each");
+      refuse(input_.name(), "compressed data of {} bytes for {} points; expected {} bytes for each",
+             decoded_bytes_, header_.points, bytes);
     }
     first_point_ = input_.mark();
   }

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <variant>
 
 #include "core/util/format.hpp"
 #include "io/files/bytes.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text_copy.hpp"
 
 namespace clearway {
@@ -15,25 +17,11 @@ namespace {
 /// Calls use(number) with a zero of the C++ type for `type`.
 template <typename Use>
 auto with_type(PlyType type, Use use) {
-  switch (type) {
-    case PlyType::kInt8:
-      return use(std::int8_t{});
-    case PlyType::kUint8:
-      return use(std::uint8_t{});
-    case PlyType::kInt16:
-      return use(std::int16_t{});
-    case PlyType::kUint16:
-      return use(std::uint16_t{});
-    case PlyType::kInt32:
-      return use(std::int32_t{});
-    case PlyType::kUint32:
-      return use(std::uint32_t{});
-    case PlyType::kFloat32:
-      return use(float{});
-    case PlyType::kFloat64:
-      break;
-  }
-  return use(double{});
+  using Number = std::variant<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t, std::int32_t,
+                              std::uint32_t, float, double>;
+  constexpr Number kZeros[] = {std::int8_t{},  std::uint8_t{},  std::int16_t{}, std::uint16_t{},
+                               std::int32_t{}, std::uint32_t{}, float{},        double{}};
+  return std::visit(use, kZeros[static_cast<std::size_t>(type)]);
 }
 
 /// Decodes one coordinate of many vertices that lie `stride` bytes apart.
@@ -84,11 +72,10 @@ bool PlyBody::next_line() {
 
 void PlyBody::refuse_cut() const {
   const bool text = is_text();
-  refuse(input_.name(),
-         (text ? "ends after line " + std::to_string(input_.line()) + " with "
-               : "ends at byte " + std::to_string(input_.end_position()) + ", within ") +
-             std::to_string(row_) + " of element " + excerpt(element_->name) + "; expected " +
-             std::to_string(element_->count) + " of them");
+  refuse(input_.name(), (text ? "ends after line " + std::to_string(input_.line()) + " with "
+                              : fmt::format("ends at byte {}, within ", input_.end_position())) +
+                            std::to_string(row_) + " of element " + excerpt(element_->name) +
+                            "; expected " + std::to_string(element_->count) + " of them");
 }
 
 void PlyBody::refuse_number(const std::string& what, std::size_t bytes) const {

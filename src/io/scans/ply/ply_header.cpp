@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/text_table.hpp"
 
 namespace clearway {
@@ -66,9 +66,8 @@ class HeaderParser {
     std::string_view line;
     if (input_.position() > kLongestHeader) fail("header longer than 1 MiB; expected end_header");
     if (!input_.next_line(line) || !input_.line_terminated()) {
-      refuse(input_.name(), "ends at byte " + std::to_string(input_.position()) +
-                                " within the header; expected " +
-                                (input_.line() <= 1 ? "`ply`" : "`end_header`"));
+      refuse(input_.name(), "ends at byte {} within the header; expected {}", input_.position(),
+             input_.line() <= 1 ? "`ply`" : "`end_header`");
     }
     std::vector<std::string_view> words;
     split_fields(line, ' ', words);

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <utility>
 
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/ply/ply_body.hpp"
 #include "io/scans/text/point_blocks.hpp"
 
@@ -35,8 +35,7 @@ class PlyReader final : public PointReader {
   const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
-    batch.quanta.clear();
-    batch.positions.clear();
+    batch.clear();
     const std::uint64_t size = std::min<std::uint64_t>(kBatchPoints, count_ - next_);
     for (std::size_t taken = 0; taken < size; taken = batch.positions.size()) {
       if (!take_block(batch.positions, size)) {
@@ -82,10 +81,9 @@ class PlyReader final : public PointReader {
       const PlyElement& element = body_.header().elements[i];
       const std::size_t bytes = element.least_bytes();
       if (bytes > 0 && element.count > room / bytes) {
-        refuse(body_.input().name(), "ends at byte " + std::to_string(end) + "; expected " +
-                                         std::to_string(element.count) + " of element " +
-                                         excerpt(element.name) + " with " + std::to_string(bytes) +
-                                         " bytes or more each");
+        refuse(body_.input().name(),
+               "ends at byte {}; expected {} of element {} with {} bytes or more each", end,
+               element.count, excerpt(element.name), bytes);
       }
       room -= element.count * bytes;
     }

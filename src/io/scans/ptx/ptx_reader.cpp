@@ -11,10 +11,9 @@
 
 #include "clearway/vec3.hpp"
 #include "core/geometry/rigid.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/input_buffer.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_reader.hpp"
@@ -30,11 +29,9 @@ struct PtxHeader {
   std::uint64_t points = 0;  ///< number of points, columns times rows
   /// Row-major with last column 0 0 0 1; a point p as a row becomes p M.
   std::array<double, 16> matrix{};
-  Pose pose{};                 ///< the matrix as a pose
-  Vec3 position{};             ///< where the scanner stood
-  double stretch[2] = {1, 1};  ///< least and greatest singular value of the matrix' rotation
-  double determinant = 1;
-  bool rigid = true;  ///< whether the matrix neither scales nor shears nor mirrors
+  Pose pose{};               ///< the matrix as a pose
+  Vec3 position{};           ///< where the scanner stood
+  Stretch stretch{1, 1, 1};  ///< of the matrix
   /// Largest difference in a coordinate between an axis of the scanner and its row of the matrix.
   double axes_differ = 0;
   /// Distance of the scanner's position from the translation of the matrix.
@@ -100,10 +97,7 @@ void judge_matrix(const InputBuffer& input, PtxHeader& header) {
                     format_number(stretch.least) + " to " + format_number(stretch.greatest) +
                     "; expected an invertible matrix");
   }
-  header.stretch[0] = stretch.least;
-  header.stretch[1] = stretch.greatest;
-  header.determinant = stretch.determinant;
-  header.rigid = is_rigid(stretch);
+  header.stretch = stretch;
 }
 
 Vec3 PtxHeader::place(const Vec3& p) const {
@@ -152,7 +146,7 @@ struct PtxFindings {
   void add(const PtxHeader& header) {
     ++scans;
     records += header.points;
-    if (!header.rigid && ++not_rigid == 1) first_not_rigid = header;
+    if (!is_rigid(header.stretch) && ++not_rigid == 1) first_not_rigid = header;
     if (header.axes_differ <= kAxesTolerance && header.position_differs <= kPositionTolerance) {
       return;
     }
@@ -167,37 +161,34 @@ struct PtxFindings {
   void append_to(std::vector<Message>& remarks, const std::string& name) const;
 };
 
-double number(std::uint64_t count) { return static_cast<double>(count); }
-
 Message remark_on_stretch(const PtxFindings& found, const std::string& name) {
   const PtxHeader& h = found.first_not_rigid;
-  return warning("scan-not-rigid",
-                 name + ": " + format_count(found.not_rigid) + " of " + format_count(found.scans) +
-                     " scans have a matrix that scales, shears or mirrors. The first is at line " +
-                     std::to_string(h.line) + ": singular values from " +
-                     format_digits(h.stretch[0], 9) + " to " + format_digits(h.stretch[1], 9) +
-                     ", determinant " + format_digits(h.determinant, 9) +
-                     ". The matrices are applied as they are",
-                 {{"scans", number(found.not_rigid)},
-                  {"line", number(h.line)},
-                  {"least", h.stretch[0]},
-                  {"greatest", h.stretch[1]},
-                  {"determinant", h.determinant}});
+  return warning(
+      "scan-not-rigid",
+      name + ": " + format_count(found.not_rigid) + " of " + format_count(found.scans) +
+          " scans have a matrix that scales, shears or mirrors. The first is at line " +
+          std::to_string(h.line) + ": singular values from " + format_digits(h.stretch.least, 9) +
+          " to " + format_digits(h.stretch.greatest, 9) + ", determinant " +
+          format_digits(h.stretch.determinant, 9) + ". The matrices are applied as they are",
+      {{"scans", found.not_rigid},
+       {"line", h.line},
+       {"least", h.stretch.least},
+       {"greatest", h.stretch.greatest},
+       {"determinant", h.stretch.determinant}});
 }
 
 Message remark_on_axes(const PtxFindings& found, const std::string& name) {
   const PtxHeader& h = found.most_contradicting;
-  return warning("scan-axes-contradict",
-                 name + ": the scanner's position and axes contradict the matrix in " +
-                     format_count(found.contradicting) + " of " + format_count(found.scans) +
-                     " scans. In the one at line " + std::to_string(h.line) +
-                     " the positions are " + format_digits(h.position_differs, 9) +
-                     " apart, and the axes differ by " + format_digits(h.axes_differ, 9) +
-                     ". The matrix is applied",
-                 {{"scans", number(found.contradicting)},
-                  {"line", number(h.line)},
-                  {"position", h.position_differs},
-                  {"axes", h.axes_differ}});
+  return warning(
+      "scan-axes-contradict",
+      {{"scans", found.contradicting},
+       {"line", h.line},
+       {"position", h.position_differs},
+       {"axes", h.axes_differ}},
+      "{}: the scanner's position and axes contradict the matrix in {} of {} scans. In the one at "
+      "line {} the positions are {} apart, and the axes differ by {}. The matrix is applied",
+      name, format_count(found.contradicting), format_count(found.scans), h.line,
+      format_digits(h.position_differs, 9), format_digits(h.axes_differ, 9));
 }
 
 void PtxFindings::append_to(std::vector<Message>& remarks, const std::string& name) const {
@@ -217,9 +208,7 @@ class PtxReader final : public PointReader {
   const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
-    batch.quanta.clear();
-    batch.positions.clear();
-    batch.absent.clear();
+    batch.clear();
     while (batch.positions.size() < kBatchPoints) {
       if (left_ == 0) {
         // A batch holds points of one scan.

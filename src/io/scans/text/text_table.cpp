@@ -70,12 +70,6 @@ bool is_one_of(std::string_view text, ColumnNames names) {
   return std::find(names.begin(), names.end(), text) != names.end();
 }
 
-std::string lower(std::string_view text) {
-  std::string out;
-  for (const char c : text) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return out;
-}
-
 std::string_view trimmed(std::string_view text, std::string_view marks = " \t\"'") {
   const std::size_t start = text.find_first_not_of(marks);
   if (start == std::string_view::npos) return {};
@@ -102,7 +96,7 @@ std::string bracketed_unit(std::string_view field) {
   const char close = field[open] == '[' ? ']' : ')';
   const std::size_t end = field.rfind(close);
   const std::size_t stop = end == std::string_view::npos || end < open ? field.size() : end;
-  return lower(trimmed(field.substr(open + 1, stop - open - 1)));
+  return lower_case(trimmed(field.substr(open + 1, stop - open - 1)));
 }
 
 void add_name(TableHeader& header, std::string_view field) {
@@ -151,11 +145,17 @@ bool TableHeader::has(ColumnNames any_of) const {
                      [&](const std::string& name) { return is_one_of(name, any_of); });
 }
 
+std::string lower_case(std::string_view text) {
+  std::string out;
+  for (const char c : text) out += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return out;
+}
+
 std::string table_name(std::string_view field) {
   field = trimmed(field);
   field = field.substr(0, field.find_first_of("[(", 1));
   std::string name;
-  for (const char c : lower(field)) {
+  for (const char c : lower_case(field)) {
     if (c != ' ' && c != '\t' && c != '"' && c != '\'') name += c;
   }
   return name;
@@ -303,7 +303,7 @@ void TextTable::remark_cut(std::vector<Message>& remarks) const {
   if (!is_cut_) return;
   remarks.push_back(warning(
       "cut-text", name() + ": the file ends without a line break within a number, so it may be cut",
-      {{"line", static_cast<double>(input_.line())}}));
+      {{"line", input_.line()}}));
 }
 
 const TableHeader& TextTable::take_header() {

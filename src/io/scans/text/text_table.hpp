@@ -49,6 +49,8 @@ TableHeader parse_table_header(std::string_view line, char separator = 0);
 std::vector<std::string> other_columns(const TableHeader& header,
                                        std::span<const std::size_t> used);
 
+/// The text with small letters of ASCII.
+std::string lower_case(std::string_view text);
 /// The lower-case form of a name, as TableHeader holds it, with a unit after `_`.
 std::string table_name(std::string_view field);
 

@@ -10,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/messages/messages.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/text_number.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/text_table.hpp"
 
 namespace clearway {
@@ -424,10 +423,9 @@ class PrologueReader {
   }
 
   void warn_of_misfit(const Comment& comment) {
-    warn("column-names", "the comment in line " + std::to_string(comment.line) + " names " +
-                             std::to_string(comment.header.names.size()) +
-                             " columns, but the points have " + std::to_string(fields_) +
-                             "; the first three are read as x, y and z");
+    warn("column-names", fmt::format("the comment in line {} names {} columns, but the points have "
+                                     "{}; the first three are read as x, y and z",
+                                     comment.line, comment.header.names.size(), fields_));
   }
 
   /// Throws InputError where the text looks like something other than points. line: the first line

@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/point_blocks.hpp"
 #include "io/scans/text/xyz_prologue.hpp"
 
@@ -16,8 +15,7 @@ namespace {
 constexpr const char* kNoLineBreak = "the file ends without a line break";
 
 std::string missing(std::size_t found, std::size_t values) {
-  return kNoLineBreak + (" after " + std::to_string(found)) + " of " + std::to_string(values) +
-         " values, so it may be cut";
+  return fmt::format("{} after {} of {} values, so it may be cut", kNoLineBreak, found, values);
 }
 
 }  // namespace
@@ -34,15 +32,13 @@ void OpenEnd::look(const InputBuffer& input, std::string_view line) {
                 missing(found, values_) + "; expected all values of the last line");
   }
   if (line.ends_with('.')) {
-    refuse_line(input.name(), line_,
-                std::string(kNoLineBreak) + " within a number; expected all of it");
+    refuse_line(input.name(), line_, "{} within a number; expected all of it", kNoLineBreak);
   }
 }
 
 void OpenEnd::append_to(std::vector<Message>& remarks, const std::string& name) const {
   if (line_ == 0 || counted_ || found_ >= values_) return;
-  remarks.push_back(warning("cut-text", name + ": " + missing(found_, values_),
-                            {{"line", static_cast<double>(line_)}}));
+  remarks.push_back(warning("cut-text", name + ": " + missing(found_, values_), {{"line", line_}}));
 }
 
 namespace {
@@ -63,9 +59,7 @@ class XyzReader final : public PointReader {
   const CloudInfo& info() const override { return info_; }
 
   bool read(PointBatch& batch) override {
-    batch.quanta.clear();
-    batch.absent.clear();
-    batch.positions.clear();
+    batch.clear();
     while (batch.positions.size() < kBatchPoints) {
       if (blocks_.take(batch.positions, kBatchPoints) > 0 || read_blocks()) continue;
       if (!read_line(batch)) break;
@@ -199,9 +193,8 @@ class XyzReader final : public PointReader {
     if (finished_) return;
     finished_ = true;
     if (is_counted() && next_ < count_.points) {
-      refuse(input_.name(), "ends after line " + std::to_string(input_.line()) + " with " +
-                                std::to_string(next_) + " points; expected " +
-                                std::to_string(count_.points) + " as " + as_declared());
+      refuse(input_.name(), "ends after line {} with {} points; expected {} as {}", input_.line(),
+             next_, count_.points, as_declared());
     }
     open_end_.append_to(info_.remarks, input_.name());
   }

@@ -18,7 +18,6 @@
 #include "clearway/convert.hpp"
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
 #include "core/util/shortened.hpp"
@@ -29,6 +28,7 @@
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/journal_values.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
 #include "io/store/convert/conversion_identity.hpp"
@@ -632,11 +632,10 @@ class Conversion {
                                                std::max<std::size_t>(1, units_in_flight_));
     check_disk(folder_, {points, padded, in_memory_ ? 0 : need.spooled});
     if (options_.regular_size && padded > 2 * points) {
-      log_.warn(
-          "padded-cells",
-          std::to_string(report_.cells) + " cells of " + std::to_string(options_.cell_points) +
-              " points for " + std::to_string(points) +
-              " points: the padding makes the store large; fewer points a cell fit the cubes");
+      log_.warn("padded-cells",
+                fmt::format("{} cells of {} points for {} points: the padding makes the store "
+                            "large; fewer points a cell fit the cubes",
+                            report_.cells, options_.cell_points, points));
     }
   }
 
@@ -704,11 +703,10 @@ std::vector<Message> kept_warnings(const std::vector<Message>& warnings) {
   }
   if (all > kMost) {
     const std::size_t more = all - kMost + 1;
-    kept.back() =
-        warning("more-warnings",
-                "the conversion gave " + format_count(more) +
-                    " more warnings, which the store does not keep; convert again to see them",
-                {{"warnings", static_cast<double>(more)}});
+    kept.back() = warning("more-warnings", {{"warnings", more}},
+                          "the conversion gave {} more warnings, which the store does not keep; "
+                          "convert again to see them",
+                          format_count(more));
   }
   return kept;
 }

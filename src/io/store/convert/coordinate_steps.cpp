@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "core/geometry/inside.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -308,15 +308,13 @@ std::optional<Message> StepJudge::warning_on_lost_digits(LengthUnit unit) const 
   }
   if (longest == 0) return std::nullopt;
   return warning(
-      "lost-digits",
-      "all coordinates " + axes + " come in steps of " + steps +
-          (all_rasters
-               ? ". There is about one point for each step, as in a regular raster: where the "
-                 "scan was denser, points may be wrong by "
-               : ". Rounded text, single floats or a coarse export have lost their digits, so "
-                 "points may be wrong by ") +
-          format_digits(longest / 2, 6) + symbol + ". Export the scan with more digits",
-      {{"step", longest}, {"raster", all_rasters ? 1.0 : 0.0}});
+      "lost-digits", {{"step", longest}, {"raster", all_rasters ? 1.0 : 0.0}},
+      "all coordinates {} come in steps of {}{}{}{}. Export the scan with more digits", axes, steps,
+      all_rasters ? ". There is about one point for each step, as in a regular raster: where the "
+                    "scan was denser, points may be wrong by "
+                  : ". Rounded text, single floats or a coarse export have lost their digits, so "
+                    "points may be wrong by ",
+      format_digits(longest / 2, 6), symbol);
 }
 
 }  // namespace clearway

@@ -8,10 +8,9 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/scans/declared_box.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/store/convert/coordinate_range.hpp"
 #include "io/store/convert/file_boxes.hpp"
 #include "io/store/convert/read_points.hpp"
@@ -539,10 +538,9 @@ void EnvironmentSource::append_rounded(const RecordBatch& records, QuantaBatch& 
 
 void EnvironmentSource::refuse_beyond_quanta(std::size_t file) const {
   if (shifts_.empty()) refuse(files()[file].string(), "changed while it was read");
-  refuse(files()[file].string(),
-         "too far from the other files for 32-bit integers of " +
-             format_digits(quantisation_.scale[0], 9),
-         Remedy::kScale);
+  refuse(files()[file].string(), Remedy::kScale,
+         "too far from the other files for 32-bit integers of {}",
+         format_digits(quantisation_.scale[0], 9));
 }
 
 bool EnvironmentPass::next(PassingBatch& batch) {

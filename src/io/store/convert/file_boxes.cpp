@@ -5,9 +5,9 @@
 #include <numeric>
 #include <optional>
 
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
 #include "io/scans/declared_box.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 namespace {
@@ -68,7 +68,7 @@ class Inputs {
              name(lone) + " lies " + format_brief(gap) + " m from " + name(*other) +
                  ", the nearest of the others: one may be in another frame or unit. Boxes: " +
                  text_of(boxes_[lone]) + "; " + text_of(boxes_[*other]),
-             {{"gap", gap}, {"files", static_cast<double>(members[group[lone]])}});
+             {{"gap", gap}, {"files", members[group[lone]]}});
   }
 
   /// Warns where consecutive sizes differ by a large factor.
@@ -82,12 +82,11 @@ class Inputs {
     for (std::size_t i = 1; i < order.size(); ++i) {
       const double small = sizes_[order[i - 1]], large = sizes_[order[i]];
       if (large < kLargeLength || large < kSizeRatio * small) continue;
-      log.warn("other-size",
-               name(order[i]) + " is " + format_brief(large / small) + " times as large as " +
-                   name(order[i - 1]) +
-                   ": one may be in another unit, such as millimetres. Boxes: " +
-                   text_of(boxes_[order[i]]) + "; " + text_of(boxes_[order[i - 1]]),
-               {{"ratio", large / small}, {"files", static_cast<double>(order.size() - i)}});
+      log.add(warning("other-size", {{"ratio", large / small}, {"files", order.size() - i}},
+                      "{} is {} times as large as {}: one may be in another unit, such as "
+                      "millimetres. Boxes: {}; {}",
+                      name(order[i]), format_brief(large / small), name(order[i - 1]),
+                      text_of(boxes_[order[i]]), text_of(boxes_[order[i - 1]])));
       return;
     }
   }
@@ -130,10 +129,8 @@ void warn_of_empty(std::span<const FileBox> boxes, std::span<const std::filesyst
   }
   if (count == 0) return;
   if (count > kNamed) names += " and " + std::to_string(count - kNamed) + " more";
-  log.warn("no-points",
-           names + ": no point that can be stored" +
-               (count == boxes.size() ? ", so nothing can collide with this store" : ""),
-           {{"files", static_cast<double>(count)}});
+  log.add(warning("no-points", {{"files", count}}, "{}: no point that can be stored{}", names,
+                  count == boxes.size() ? ", so nothing can collide with this store" : ""));
 }
 
 }  // namespace

@@ -5,9 +5,8 @@
 #include <map>
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/map_scale.hpp"
 #include "io/scans/scan_crs.hpp"
 #include "io/store/convert/map_warnings.hpp"
@@ -241,13 +240,10 @@ class Agreement {
       }
     }
     if (unnamed == 0) return;
-    common_.warnings.push_back(
-        note("no-crs",
-             std::to_string(unnamed) + " of " + std::to_string(infos_.size()) +
-                 " files name no coordinate reference system. They are taken to "
-                 "be in that of " +
-                 source,
-             {{"files", static_cast<double>(unnamed)}}));
+    common_.warnings.push_back(note(
+        "no-crs", {{"files", unnamed}},
+        "{} of {} files name no coordinate reference system. They are taken to be in that of {}",
+        unnamed, infos_.size(), source));
   }
 
   std::span<const std::filesystem::path> files_;
@@ -329,15 +325,14 @@ std::optional<Message> remark_on_mixture(std::span<const std::filesystem::path> 
   });
   return warning_or_note(
       step > kCoarseStep || as_models_are, "floating-point-rounded",
-      std::to_string(count) + " of " + std::to_string(infos.size()) +
-          " files have floating-point coordinates, the first is " +
-          name_of(std::ranges::find_if_not(infos, has_integers)) +
-          ". They are rounded to the steps of " +
-          name_of(std::ranges::find_if(infos, has_integers)) + ", " + format_digits(step, 9) +
-          (as_models_are ? ". Is one of them the model? It does not belong among the "
-                           "scans"
-                         : ""),
-      {{"files", static_cast<double>(count)}, {"step", step}});
+      fmt::format("{} of {} files have floating-point coordinates, the first is {}. They are "
+                  "rounded to the steps of {}, {}{}",
+                  count, infos.size(), name_of(std::ranges::find_if_not(infos, has_integers)),
+                  name_of(std::ranges::find_if(infos, has_integers)), format_digits(step, 9),
+                  as_models_are ? ". Is one of them the model? It does not belong among the "
+                                  "scans"
+                                : ""),
+      {{"files", count}, {"step", step}});
 }
 
 }  // namespace clearway

@@ -67,7 +67,7 @@ std::optional<Message> warning_on_skipped(std::span<const std::string> reasons) 
   for (std::size_t i = 0; i < reasons.size() && i < kMostNamed; ++i) text += "; " + reasons[i];
   if (reasons.size() > kMostNamed)
     text += "; and " + std::to_string(reasons.size() - kMostNamed) + " more";
-  return warning("skipped-files", text, {{"files", static_cast<double>(reasons.size())}});
+  return warning("skipped-files", text, {{"files", reasons.size()}});
 }
 
 /// Throws for a pipe, which can be read only once.

@@ -1,9 +1,8 @@
 #include "io/store/convert/input_warnings.hpp"
 
 #include "clearway/error.hpp"
-#include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/store/convert/same_scans.hpp"
 
 namespace clearway {
@@ -30,12 +29,11 @@ void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& 
   const auto non_finite = static_cast<double>(environment.counts().non_finite_points);
   const auto absent = static_cast<double>(environment.counts().absent_points);
   if (non_finite > 0) {
-    log.warn("non-finite-points",
-             format_count(environment.counts().non_finite_points) + " points (" +
-                 percentage(non_finite / records) +
-                 ") with NaN or infinite coordinates are left out; the first is " +
-                 name_of(environment, environment.counts().first_non_finite),
-             {{"points", non_finite}, {"share", non_finite / records}});
+    log.add(warning("non-finite-points", {{"points", non_finite}, {"share", non_finite / records}},
+                    "{} points ({}) with NaN or infinite coordinates are left out; the first is {}",
+                    format_count(environment.counts().non_finite_points),
+                    percentage(non_finite / records),
+                    name_of(environment, environment.counts().first_non_finite)));
   }
   const auto withheld = static_cast<double>(environment.counts().withheld_points);
   if (withheld > 0) {
@@ -50,11 +48,10 @@ void warn_of_missing(const EnvironmentSource& environment, const StoreMetadata& 
         {{"points", withheld}, {"share", withheld / records}, {"kept", kept ? 1.0 : 0.0}}));
   }
   if (absent > kMostAbsent * records && metadata.point_count > 0) {
-    log.warn("absent-points",
-             format_count(environment.counts().absent_points) + " of " +
-                 format_count(metadata.input_points) + " records (" + percentage(absent / records) +
-                 ") hold no point",
-             {{"records", absent}, {"share", absent / records}});
+    log.add(warning("absent-points", {{"records", absent}, {"share", absent / records}},
+                    "{} of {} records ({}) hold no point",
+                    format_count(environment.counts().absent_points),
+                    format_count(metadata.input_points), percentage(absent / records)));
   }
 }
 
@@ -88,12 +85,12 @@ void warn_of_places(const EnvironmentSource& environment, const PlaceCounter& pl
     text += ". " + std::to_string(crowded.size() - 1) + " more such places hold fewer points";
   }
   log.warn("same-place", text,
-           {{"points", static_cast<double>(most.count)},
+           {{"points", most.count},
             {"share", share},
             {"x", at.x},
             {"y", at.y},
             {"z", at.z},
-            {"places", static_cast<double>(crowded.size())}});
+            {"places", crowded.size()}});
 }
 
 }  // namespace clearway

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/map_scale.hpp"
 
 namespace clearway {
@@ -69,11 +69,10 @@ void check_map_scale(const FilesOfSystem& files, const Box& box, const std::stri
       " times by area; longitude " + format_brief(scale->longitude) + ", latitude " +
       format_brief(scale->latitude) + ")";
   if (scale->error() > kMostMapScale && !ignore) {
-    refuse(files.first,
-           text +
-               ", expected a map that keeps lengths within 5 %; transform the scan to a system "
-               "of its place, such as its UTM zone",
-           Remedy::kIgnoreCrs);
+    refuse(files.first, Remedy::kIgnoreCrs,
+           "{}, expected a map that keeps lengths within 5 %; transform the scan to a system of "
+           "its place, such as its UTM zone",
+           text);
   }
   log.warn(kMapScaleCode,
            name + text +

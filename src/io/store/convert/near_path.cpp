@@ -6,9 +6,9 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/trajectory_file.hpp"
 #include "io/scans/declared_box.hpp"
+#include "io/scans/formatted_message.hpp"
 
 namespace clearway {
 
@@ -53,11 +53,10 @@ void refuse_empty_corridor(const ConvertOptions& options, const Corridor& corrid
   Box of_path{corridor.path()[0], corridor.path()[0]};
   for (const Vec3& p : corridor.path()) of_path.extend(p);
   refuse(options.near.string(),
-         "none of the " + format_count(far_points) + " points of the scans is within " +
-             format_number(corridor.within()) + " of its path. The path lies in " +
-             declared_box_text(of_path) + ", and the scans in " +
-             (whole ? declared_box_text(*whole) : "no box") +
-             "; expected a path through the scans, in their unit and coordinate system");
+         "none of the {} points of the scans is within {} of its path. The path lies in {}, and "
+         "the scans in {}; expected a path through the scans, in their unit and coordinate system",
+         format_count(far_points), format_number(corridor.within()), declared_box_text(of_path),
+         whole ? declared_box_text(*whole) : "no box");
 }
 
 }  // namespace clearway

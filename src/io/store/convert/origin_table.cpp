@@ -8,10 +8,10 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/mapped_file.hpp"
 #include "io/files/text_number.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/scans/text/text_table.hpp"
 
 namespace clearway {
@@ -224,7 +224,7 @@ void OriginTable::warn(const StoreOrigins& origins, std::uint64_t points,
              format_count(origins.points_without) + " of " + format_count(points) + " points (" +
                  format_brief(share) +
                  " %) have no origin, so it is not known where the space before them was seen from",
-             {{"points", static_cast<double>(origins.points_without)}, {"share", share / 100}});
+             {{"points", origins.points_without}, {"share", share / 100}});
   }
   if (all_zero_) warn_of_zero(box, metres, log);
   if (box && metres > 0) warn_of_far(origins, *box, metres, log);
@@ -242,7 +242,7 @@ void OriginTable::warn_of_zero(const std::optional<Box>& box, double metres,
            "all origins are at 0 0 0, " + why +
                ". That is right for a single scan in its scanner's own coordinates, and wrong for "
                "scans that were moved or merged without their positions",
-           {{"runs", static_cast<double>(with_origin_)}, {"metres", away}});
+           {{"runs", with_origin_}, {"metres", away}});
 }
 
 void OriginTable::warn_of_far(const StoreOrigins& origins, const Box& box, double metres,
@@ -262,12 +262,11 @@ void OriginTable::warn_of_far(const StoreOrigins& origins, const Box& box, doubl
     farthest = std::max(farthest, away);
   }
   if (far == 0) return;
-  log.warn("origins-far",
-           format_count(far) + " of " + counted(origins.quanta.size(), "origin") +
-               (far == 1 ? " is" : " are") +
-               " more than 1 km away from all points; the farthest, " + text_of(at) + ", by " +
-               format_brief(farthest / 1000) + " km. Are they in the coordinates of the scans?",
-           {{"origins", static_cast<double>(far)}, {"metres", farthest}});
+  log.add(warning("origins-far", {{"origins", far}, {"metres", farthest}},
+                  "{} of {}{} more than 1 km away from all points; the farthest, {}, by {} km. Are "
+                  "they in the coordinates of the scans?",
+                  format_count(far), counted(origins.quanta.size(), "origin"),
+                  far == 1 ? " is" : " are", text_of(at), format_brief(farthest / 1000)));
 }
 
 void add_origins_of_inputs(const EnvironmentSource& environment, OriginTable& table) {

@@ -7,10 +7,10 @@
 
 #include "clearway/error.hpp"
 #include "core/util/format.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/mapped_file.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/paths/trajectory_file.hpp"
+#include "io/scans/formatted_message.hpp"
 #include "io/store/convert/near_path.hpp"
 
 namespace clearway {
@@ -270,12 +270,10 @@ void PathOrigins::refuse_same_times() const {
     const Sums& file = files_[i];
     const std::uint64_t most = file.first == 0 ? 1 : kMoreThanAPulse;
     if (file.with_time <= most || file.first != file.last) continue;
-    refuse(
-        name_of(i),
-        "all " + format_count(file.with_time) + " points have the GPS time " +
-            seconds_text(file.first) +
-            " s; expected the times at which they were measured, because the origins on the path "
-            "follow from them");
+    refuse(name_of(i),
+           "all {} points have the GPS time {} s; expected the times at which they were measured, "
+           "because the origins on the path follow from them",
+           format_count(file.with_time), seconds_text(file.first));
   }
 }
 
@@ -353,45 +351,39 @@ void PathOrigins::warn(const OriginsPathReport& found, MessageLog& log) const {
     without += file.points;
   }
   if (files > 0) {
-    log.warn("no-gps-times",
-             counted(files, "input") + (files == 1 ? " has" : " have") + " no GPS times, so " +
-                 format_count(without) + " points have no origin",
-             {{"files", static_cast<double>(files)}, {"points", static_cast<double>(without)}});
+    log.add(warning("no-gps-times", {{"files", files}, {"points", without}},
+                    "{}{} no GPS times, so {} points have no origin", counted(files, "input"),
+                    files == 1 ? " has" : " have", format_count(without)));
   }
   if (all_.not_finite > 0) {
-    log.warn("gps-times-not-finite",
-             counted(all_.not_finite, "point has", "points have") +
-                 " a GPS time that is not finite, and so no origin",
-             {{"points", static_cast<double>(all_.not_finite)}});
+    log.add(warning("gps-times-not-finite", {{"points", all_.not_finite}},
+                    "{} a GPS time that is not finite, and so no origin",
+                    counted(all_.not_finite, "point has", "points have")));
   }
   if (all_.contradicting > 0) {
-    log.warn(
-        "gps-times-contradict",
-        "the GPS times of " + counted(all_.contradicting, "point") +
-            " cannot be what the headers of their files say (bit 0 of the global encoding: 0 "
-            "for seconds of the GPS week, 1 for adjusted standard GPS time). They are compared "
-            "with the path as they are",
-        {{"points", static_cast<double>(all_.contradicting)}});
+    log.add(warning("gps-times-contradict", {{"points", all_.contradicting}},
+                    "the GPS times of {} cannot be what the headers of their files say (bit 0 of "
+                    "the global encoding: 0 for seconds of the GPS week, 1 for adjusted standard "
+                    "GPS time). They are compared with the path as they are",
+                    counted(all_.contradicting, "point")));
   }
   const std::uint64_t outside = found.before + found.after + found.in_gaps;
   if (outside == 0) return;
-  log.warn(
+  log.add(warning(
       "origins-path-gap",
-      format_count(outside) + " of " + format_count(all_.with_time) +
-          " points with a GPS time have no origin, because the path does not say where the "
-          "scanner was: " +
-          format_count(found.before) + " are from before its first pose, " +
-          format_count(found.after) + " from after its last one, and " +
-          format_count(found.in_gaps) + " from between poses more than " +
-          format_brief(TimedPath::kLongestStep) + " s apart" +
-          (path_->gaps() > 0 ? " (the path has " + counted(path_->gaps(), "such gap") +
-                                   ", the longest of " + format_brief(path_->longest_gap()) + " s)"
-                             : ""),
-      {{"before", static_cast<double>(found.before)},
-       {"after", static_cast<double>(found.after)},
-       {"in_gaps", static_cast<double>(found.in_gaps)},
-       {"gaps", static_cast<double>(path_->gaps())},
-       {"longest_gap", path_->longest_gap()}});
+      {{"before", found.before},
+       {"after", found.after},
+       {"in_gaps", found.in_gaps},
+       {"gaps", path_->gaps()},
+       {"longest_gap", path_->longest_gap()}},
+      "{} of {} points with a GPS time have no origin, because the path does not say where the "
+      "scanner was: {} are from before its first pose, {} from after its last one, and {} from "
+      "between poses more than {} s apart{}",
+      format_count(outside), format_count(all_.with_time), format_count(found.before),
+      format_count(found.after), format_count(found.in_gaps), format_brief(TimedPath::kLongestStep),
+      path_->gaps() > 0 ? " (the path has " + counted(path_->gaps(), "such gap") +
+                              ", the longest of " + format_brief(path_->longest_gap()) + " s)"
+                        : ""));
 }
 
 }  // namespace clearway

@@ -145,7 +145,7 @@ void warn_of_same_scans(std::span<const std::filesystem::path> files,
   if (count == 0) return;
   if (count > kNamed) names += "; and " + std::to_string(count - kNamed) + " more";
   log.warn("same-scan", names + ": " + format_count(points) + " points are in the store twice",
-           {{"files", static_cast<double>(count)}, {"points", static_cast<double>(points)}});
+           {{"files", count}, {"points", points}});
 }
 
 }  // namespace clearway
