@@ -19,13 +19,6 @@ inline void remove_link(const std::filesystem::path& path, const std::string& na
   hdf5::check(H5Ldelete(open_to_change(path).get(), name.c_str(), H5P_DEFAULT), name.c_str());
 }
 
-template <typename Number>
-void replace_dataset(const std::filesystem::path& path, const std::string& name,
-                     const std::vector<Number>& values, std::uint64_t columns = 0) {
-  remove_link(path, name);
-  hdf5::write_dataset(open_to_change(path), name, std::span<const Number>(values), columns);
-}
-
 /// write: writes the attribute, which is not there, to the open file that it is called with.
 template <typename Write>
 void replace_attribute(const std::filesystem::path& path, const char* name, const Write& write) {

@@ -276,14 +276,13 @@ Attribute open_attribute(const Id& object, const std::string& name, const std::s
 
 }  // namespace
 
-template <typename Number>
-void write_attribute(const Id& object, const std::string& name, std::span<const Number> values,
-                     std::uint64_t columns) {
-  const Id space = simple_space(values.size() / std::max<std::uint64_t>(columns, 1), columns);
-  const Id attribute(H5Acreate2(object.get(), name.c_str(), file_type<Number>(), space.get(),
-                                H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose, "create attribute " + name);
-  check(H5Awrite(attribute.get(), memory_type<Number>(), values.data()), "write attribute " + name);
+void write_attribute(const Id& object, const std::string& name, hid_t type, std::size_t count,
+                     const void* numbers) {
+  const Id space = simple_space(count, 0);
+  const Id attribute(
+      H5Acreate2(object.get(), name.c_str(), type, space.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+      "create attribute " + name);
+  check(H5Awrite(attribute.get(), type, numbers), "write attribute " + name);
 }
 
 void write_attribute(const Id& object, const std::string& name, const std::string& text) {
@@ -303,16 +302,13 @@ bool has_attribute(const Id& object, const std::string& name, const std::string&
   return found > 0;
 }
 
-template <typename Number>
-std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
-                                   const std::string& file) {
+void read_attribute(const Id& object, const std::string& name, hid_t expected, void* number,
+                    const std::string& file) {
   const auto [attribute, type, numbers] = open_attribute(object, name, file);
-  if (H5Tequal(type.get(), file_type<Number>()) <= 0 || numbers != static_cast<hssize_t>(count)) {
-    malformed(file, name, std::to_string(count) + " numbers of the type written");
+  if (H5Tequal(type.get(), expected) <= 0 || numbers != 1) {
+    malformed(file, name, "one number of the type written");
   }
-  std::vector<Number> values(count);
-  check(H5Aread(attribute.get(), memory_type<Number>(), values.data()), file + ": read " + name);
-  return values;
+  check(H5Aread(attribute.get(), expected, number), file + ": read " + name);
 }
 
 std::string read_text_attribute(const Id& object, const std::string& name,
@@ -328,19 +324,5 @@ std::string read_text_attribute(const Id& object, const std::string& name,
   text.resize(text.find('\0') == std::string::npos ? text.size() : text.find('\0'));
   return text;
 }
-
-#define CLEARWAY_INSTANTIATE(Number)                                                      \
-  template void write_attribute(const Id&, const std::string&, std::span<const Number>,   \
-                                std::uint64_t);                                           \
-  template std::vector<Number> read_attribute(const Id&, const std::string&, std::size_t, \
-                                              const std::string&);
-
-CLEARWAY_INSTANTIATE(std::uint8_t)
-CLEARWAY_INSTANTIATE(std::uint16_t)
-CLEARWAY_INSTANTIATE(std::int32_t)
-CLEARWAY_INSTANTIATE(std::uint32_t)
-CLEARWAY_INSTANTIATE(std::uint64_t)
-CLEARWAY_INSTANTIATE(double)
-#undef CLEARWAY_INSTANTIATE
 
 }  // namespace clearway::hdf5

@@ -99,97 +99,42 @@ Id open_group(const Id& parent, const std::string& name, const std::string& file
 /// storage are not checked.
 Id open_dataset(const Id& parent, const std::string& name, const std::string& file);
 
-/// The HDF5 type of a C++ number, little-endian in the file.
+/// The HDF5 type of a C++ number, which is little-endian in the file and in memory.
 template <typename Number>
 hid_t file_type();
-template <typename Number>
-hid_t memory_type();
 
 // clang-format off
 template <> inline hid_t file_type<std::uint8_t>() { return H5T_STD_U8LE; }
-template <> inline hid_t memory_type<std::uint8_t>() { return H5T_NATIVE_UINT8; }
 template <> inline hid_t file_type<std::uint16_t>() { return H5T_STD_U16LE; }
-template <> inline hid_t memory_type<std::uint16_t>() { return H5T_NATIVE_UINT16; }
 template <> inline hid_t file_type<std::int32_t>() { return H5T_STD_I32LE; }
-template <> inline hid_t memory_type<std::int32_t>() { return H5T_NATIVE_INT32; }
 template <> inline hid_t file_type<std::uint32_t>() { return H5T_STD_U32LE; }
-template <> inline hid_t memory_type<std::uint32_t>() { return H5T_NATIVE_UINT32; }
 template <> inline hid_t file_type<std::uint64_t>() { return H5T_STD_U64LE; }
-template <> inline hid_t memory_type<std::uint64_t>() { return H5T_NATIVE_UINT64; }
 template <> inline hid_t file_type<std::int64_t>() { return H5T_STD_I64LE; }
-template <> inline hid_t memory_type<std::int64_t>() { return H5T_NATIVE_INT64; }
 template <> inline hid_t file_type<double>() { return H5T_IEEE_F64LE; }
-template <> inline hid_t memory_type<double>() { return H5T_NATIVE_DOUBLE; }
 // clang-format on
 
-/// Writes a one- or two-dimensional dataset, chunked by rows, with fletcher32. values: rows x
-/// columns, row-major; columns 0 makes it one-dimensional.
-template <typename Number>
-void write_dataset(const Id& parent, const std::string& name, std::span<const Number> values,
-                   std::uint64_t columns = 0);
-
-/// Reads a whole dataset of `rows` x `columns` (columns 0: one-dimensional). Throws InputError when
-/// it is missing, has another type, shape or storage than write_dataset() gives it, is larger than
-/// the file, or fails its checksum. file: its name for messages.
-template <typename Number>
-std::vector<Number> read_dataset(const Id& parent, const std::string& name, std::uint64_t rows,
-                                 std::uint64_t columns, const std::string& file);
-
-/// Number of rows of a one- or two-dimensional dataset according to its extent, which must not be
-/// trusted before the dataset has been read.
-std::uint64_t dataset_rows(const Id& parent, const std::string& name, const std::string& file);
-
-/// Writes an attribute of numbers. columns: see write_dataset().
-template <typename Number>
-void write_attribute(const Id& object, const std::string& name, std::span<const Number> values,
-                     std::uint64_t columns = 0);
+/// Writes an attribute of `count` numbers of a type.
+void write_attribute(const Id& object, const std::string& name, hid_t type, std::size_t count,
+                     const void* numbers);
 void write_attribute(const Id& object, const std::string& name, const std::string& text);
 
 /// Writes an attribute of one number.
 template <typename Number>
 void write_number(const Id& object, const std::string& name, Number value) {
-  write_attribute<Number>(object, name, std::span(&value, 1));
+  write_attribute(object, name, file_type<Number>(), 1, &value);
 }
 
-/// Whether the object has an attribute. Throws like read_attribute() where this cannot be
-/// determined.
+/// Whether the object has an attribute. Throws like read_number() where this cannot be determined.
 bool has_attribute(const Id& object, const std::string& name, const std::string& file);
-template <typename Number>
-std::vector<Number> read_attribute(const Id& object, const std::string& name, std::size_t count,
-                                   const std::string& file);
+/// Reads an attribute of one number of a type. Throws InputError where it is missing or another.
+void read_attribute(const Id& object, const std::string& name, hid_t type, void* number,
+                    const std::string& file);
 template <typename Number>
 Number read_number(const Id& object, const std::string& name, const std::string& file) {
-  return read_attribute<Number>(object, name, 1, file).front();
+  Number number{};
+  read_attribute(object, name, file_type<Number>(), &number, file);
+  return number;
 }
 std::string read_text_attribute(const Id& object, const std::string& name, const std::string& file);
-
-/// A one- or two-dimensional dataset written or read by ranges of rows.
-template <typename Number>
-class Rows {
- public:
-  /// Creates a dataset of rows x columns (columns 0: one-dimensional) laid out as by
-  /// write_dataset().
-  Rows(const Id& parent, const std::string& name, std::uint64_t rows, std::uint64_t columns);
-  /// Opens an existing dataset. Throws InputError as read_dataset() does.
-  static Rows open(const Id& parent, const std::string& name, std::uint64_t columns,
-                   const std::string& file);
-
-  std::uint64_t rows() const { return rows_; }
-  void write(std::uint64_t first_row, std::span<const Number> values);
-  /// Closes the dataset after the last write, whose failure may appear only here.
-  void close();
-  void read(std::uint64_t first_row, std::span<Number> values) const;
-  std::uint64_t chunk_rows() const;
-
- private:
-  Rows() = default;
-  Id select(std::uint64_t first_row, std::uint64_t row_count, Id& memory_space) const;
-
-  Id dataset_;
-  std::uint64_t rows_ = 0;
-  std::uint64_t columns_ = 0;
-  std::string name_;
-  std::string file_;  ///< name of the file in which it was opened
-};
 
 }  // namespace clearway::hdf5

@@ -355,8 +355,9 @@ TableWriter& TableFileWriter::add_table(std::string group, std::vector<TableColu
 }
 
 void TableFileWriter::note(const char* attribute, std::span<const double> numbers) {
-  hdf5::naming(state_->name,
-               [&] { hdf5::write_attribute<double>(state_->file, attribute, numbers); });
+  hdf5::naming(state_->name, [&] {
+    hdf5::write_attribute(state_->file, attribute, H5T_IEEE_F64LE, numbers.size(), numbers.data());
+  });
 }
 
 void TableFileWriter::note(const char* attribute, bool flag) {

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "io/files/hdf5.hpp"
-
 namespace clearway {
 
 class HeaderValues;
@@ -26,11 +24,5 @@ struct ScanDates {
 
 /// What the header of a file keeps. Throws InputError for what is no day.
 void keep_facts(HeaderValues& values, ScanDates& dates);
-
-/// Writes the dates as attributes of a store or a result; none where no file says.
-void write_scan_dates(const hdf5::Id& file, const ScanDates& dates);
-
-/// Reads the dates. name: the file's, for messages. Throws InputError where they are damaged.
-ScanDates read_scan_dates(const hdf5::Id& file, const std::string& name);
 
 }  // namespace clearway

@@ -49,7 +49,7 @@ constexpr std::array<hsize_t, 2> kOrigin{0, 0};
 template <typename Value>
 std::vector<std::byte> packed_by_hdf5(PackedFile& file, const std::vector<Value>& values) {
   const hdf5::Id dataset = file.dataset<Value>(values.size());
-  hdf5::check(H5Dwrite(dataset.get(), hdf5::memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+  hdf5::check(H5Dwrite(dataset.get(), hdf5::file_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                        values.data()),
               "write");
   hdf5::check(H5Fflush(dataset.get(), H5F_SCOPE_LOCAL), "flush");
@@ -71,7 +71,7 @@ std::vector<Value> unpacked_by_hdf5(PackedFile& file, const std::vector<std::byt
       H5Dwrite_chunk(dataset.get(), H5P_DEFAULT, 0, kOrigin.data(), bytes.size(), bytes.data()),
       "write chunk");
   std::vector<Value> values(count);
-  hdf5::check(H5Dread(dataset.get(), hdf5::memory_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
+  hdf5::check(H5Dread(dataset.get(), hdf5::file_type<Value>(), H5S_ALL, H5S_ALL, H5P_DEFAULT,
                       values.data()),
               "read");
   return values;
