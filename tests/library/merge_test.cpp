@@ -157,7 +157,7 @@ TEST_CASE("parts of different runs are refused and named") {
 
   shards.whole();
   refused_with(shards.scene.folder / "whole.h5", "whole.h5: is a whole result");
-  refused_with(shards.scene.folder / "wall.h5", "wall.h5: attribute 'format'");
+  refused_with(shards.scene.folder / "wall.h5", "wall.h5: is not a result");
 }
 
 TEST_CASE("damage in a part is noticed") {

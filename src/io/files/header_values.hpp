@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "clearway/box.hpp"
@@ -29,7 +30,9 @@ class HeaderValues {
   /// Writes into an object.
   explicit HeaderValues(Json& object) : to_(&object) {}
   /// Reads from an object of a file with this name. Both must outlive this object.
-  HeaderValues(const Json& object, const std::string& file) : from_(&object), file_(&file) {}
+  /// within: the names of the objects around it, as in "near.".
+  HeaderValues(const Json& object, const std::string& file, std::string within = "")
+      : from_(&object), file_(&file), within_(std::move(within)) {}
 
   bool reads() const { return from_ != nullptr; }
   bool has(const char* key) const { return from_ != nullptr && from_->contains(key); }
@@ -73,7 +76,7 @@ class HeaderValues {
 
   /// Throws InputError that names a fact.
   [[noreturn]] void refuse_fact(const std::string& key, const std::string& expected) const {
-    refuse(*file_, "header: '" + key + "': expected " + expected);
+    refuse(*file_, "header: '" + within_ + key + "': expected " + expected);
   }
 
  private:
@@ -112,7 +115,7 @@ class HeaderValues {
   void take(const Json& json, const std::string& key, Value& value) const {
     if constexpr (requires(HeaderValues & values) { keep_facts(values, value); }) {
       if (!json.is_object()) refuse_fact(key, "an object");
-      HeaderValues within(json, *file_);
+      HeaderValues within(json, *file_, within_ + key + ".");
       keep_facts(within, value);
     } else if constexpr (std::is_same_v<Value, Vec3>) {
       std::array<double, 3> v{};
@@ -168,6 +171,7 @@ class HeaderValues {
   Json* to_ = nullptr;
   const Json* from_ = nullptr;
   const std::string* file_ = nullptr;
+  std::string within_ = {};
 };
 
 inline void keep_facts(HeaderValues& values, Box& box) {

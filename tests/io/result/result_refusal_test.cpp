@@ -196,8 +196,8 @@ TEST_CASE("a result whose datasets or attributes are not those of a run is refus
     return fact("model_box", {{"lo", lo}, {"hi", {0.0, 0.0, 0.0}}});
   };
   check_refused_file(vehicle, "'model_box'", box({0.0, 0.0, 1.0}));
-  check_refused_file(vehicle, "'lo': expected 3 values", box({0.0, 0.0}));
-  check_refused_file(vehicle, "'lo': expected a number", box({0.0, 0.0, nullptr}));
+  check_refused_file(vehicle, "'model_box.lo': expected 3 values", box({0.0, 0.0}));
+  check_refused_file(vehicle, "'model_box.lo': expected a number", box({0.0, 0.0, nullptr}));
   SampleResult floor(full_header(3), 3);
   floor.header.floor = 0.2;
   check_refused_file(floor, "'body_floors' is missing; run it again", [](const Path&) {});
