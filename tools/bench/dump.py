@@ -19,7 +19,18 @@ import numpy
 # What the files of before call otherwise, by kind: the old name of a fact or the path of a column, and
 # the new one. None: it says nothing that another does not say.
 NAMES = {
-    "clearway result": {"ignored_points": "ignored.points", "runs_without_bodies": None},
+    "clearway result": {
+        "ignored_points": "ignored.points", "runs_without_bodies": None, "first_date": "scanned.first",
+        "last_date": "scanned.last", "shard[0]": "part.shard.number", "shard[1]": "part.shard.count",
+        "division": "part.division", "store": "part.store", "path_length": "searched.path",
+        "searched_length": "searched.whole", "partly_searched_length": "searched.part",
+        "certain_points": "certain.points", "certain_group": "certain.has_group",
+        "unseen_cube_side": "seen_space.cube_side", "swept_cubes": "seen_space.swept_cubes",
+        "unseen_cubes": "seen_space.unseen_cubes", "unseen_groups": "seen_space.unseen_groups",
+        "unseen_listed_groups": "seen_space.listed_groups",
+        "unseen_listed_cubes": "seen_space.listed_cubes",
+        "not_scanned_length": "seen_space.not_scanned_length",
+    },
     "clearway section": {
         "ignored.blocked_cells": "ignored_cells.blocked",
         "ignored.high_cells": "ignored_cells.high",
@@ -97,7 +108,7 @@ def new_facts(file, columns):
     """The header; and attributes, where they do not say what it says."""
     header = file["header"][:].tobytes()
     facts = json.loads(header, parse_int=lambda digits: -0.0 if digits == "-0" else int(digits))
-    rows = {path.lstrip("/"): number for path, number in facts.pop("columns").items()}
+    rows = {path.lstrip("/"): number for path, (number, _) in facts.pop("columns").items()}
     if rows != {path: len(column) for path, column in columns.items()}:
         facts["columns"] = rows
     del facts["chunk_hashes"]
@@ -134,6 +145,8 @@ def warning(attributes):
 def of_result(facts, columns, attributes):
     facts.update({name: facts[name] == 1 for name in FLAGS if name in facts})
     facts["model_box"] = boxes(facts["model_box"])[0]
+    for name in ("ignored_colliding", "ignored_colliding_high"):
+        facts.setdefault(name, 0)
     if "bodies" in facts:
         facts["bodies"] = facts["bodies"].split("\n")
     if "body_floors" in facts:
@@ -153,6 +166,8 @@ def of_section(facts, columns, file):
         left_out.append("pivots")
     facts.update(counts, **{name: number for name, number in numbers.items()
                             if not name.startswith(tuple(left_out))})
+    facts["seen"] = "seen_cube" in facts
+    facts.setdefault("seen_cube", 0)
     facts["ignored"] = {name: plain(value) for name, value in file["ignored"].attrs.items()}
     facts["ignore_classes"] = columns.pop("ignored/classes").tolist()
     facts["ignore_boxes"] = boxes(columns.pop("ignored/boxes"))
