@@ -228,13 +228,6 @@ void require_own_link(const Id& parent, const std::string& path, const std::stri
   }
 }
 
-Id open_group(const Id& parent, const std::string& name, const std::string& file) {
-  require_own_link(parent, name, file);
-  const hid_t group = H5Gopen2(parent.get(), name.c_str(), H5P_DEFAULT);
-  if (group < 0) malformed(file, name, "an intact group (" + reason() + ")");
-  return {group, H5Gclose, file + ": group " + name};
-}
-
 Id open_dataset(const Id& parent, const std::string& name, const std::string& file) {
   require_own_link(parent, name, file);
   const hid_t opened = H5Dopen2(parent.get(), name.c_str(), H5P_DEFAULT);
@@ -250,10 +243,11 @@ bool holds(const std::filesystem::path& path, const std::string& name) {
   return found > 0;
 }
 
-Id create_group(const Id& parent, const std::string& name) {
+void require_group(const Id& parent, const std::string& name) {
+  if (H5Lexists(parent.get(), name.c_str(), H5P_DEFAULT) > 0) return;
   const Id creation = untimed(H5P_GROUP_CREATE);
-  return {H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-          H5Gclose, "create group " + name};
+  const Id group(H5Gcreate2(parent.get(), name.c_str(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+                 H5Gclose, "create group " + name);
 }
 
 namespace {

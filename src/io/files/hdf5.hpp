@@ -91,12 +91,11 @@ Id create_file(const std::filesystem::path& path);
 Id open_file(const std::filesystem::path& path);
 /// Whether an HDF5 file has an object of this name at its root. Throws like open_file.
 bool holds(const std::filesystem::path& path, const std::string& name);
-Id create_group(const Id& parent, const std::string& name);
-/// Opens a group of the file itself. Throws InputError where it is missing or damaged, or where the
-/// name is a link, which may lead out of the file. file: its name for messages.
-Id open_group(const Id& parent, const std::string& name, const std::string& file);
-/// Opens a dataset of the file itself, with the exceptions of open_group(). Its type, shape and
-/// storage are not checked.
+/// Creates a group unless it is there already.
+void require_group(const Id& parent, const std::string& name);
+/// Opens a dataset of the file itself, whose type, shape and storage are not checked. Throws
+/// InputError where it is missing or damaged, or where the name is a link, which may lead out of
+/// the file. file: its name for messages.
 Id open_dataset(const Id& parent, const std::string& name, const std::string& file);
 
 /// The HDF5 type of a C++ number, which is little-endian in the file and in memory.

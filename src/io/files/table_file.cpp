@@ -238,9 +238,7 @@ TableWriter::TableWriter(TableFileWriter& file, std::string group, std::vector<T
                          std::uint64_t rows)
     : file_(file), group_(std::move(group)), columns_(std::move(columns)), promised_(rows) {
   TableFileWriter::State& state = *file_.state_;
-  if (!group_.empty() && H5Lexists(state.file.get(), group_.c_str(), H5P_DEFAULT) <= 0) {
-    hdf5::create_group(state.file, group_);
-  }
+  if (!group_.empty()) hdf5::require_group(state.file, group_);
   for (const TableColumn& column : columns_) {
     datasets_.push_back({create_dataset(state.file, path_of(group_, column.name), column, rows),
                          rows_of_chunk(rows, column.value_bytes())});
@@ -582,8 +580,6 @@ const std::string& TableFile::name() const { return state_->name; }
 std::size_t TableFile::kind() const { return state_->kind; }
 const Json& TableFile::header() const { return state_->header; }
 const hdf5::Id& TableFile::file() const { return state_->file; }
-
-bool TableFile::has(const std::string& path) const { return state_->columns.contains(path); }
 
 StoredColumn TableFile::open(const std::string& path, const TableColumn& form) const {
   return as_input(name(), [&] {

@@ -265,10 +265,8 @@ class TableFile {
   std::size_t kind() const;         ///< index of the kind that it has
   const Json& header() const;
 
-  /// Whether the file has a column of this path, such as "collisions/source".
-  bool has(const std::string& path) const;
-
-  /// Opens a column. Throws InputError where it is missing, or has another form than was written.
+  /// Opens a column by its path, such as "collisions/source". Throws InputError where it is
+  /// missing, or has another form than was written.
   template <typename Value>
   StoredValues<Value> column(const std::string& path) const {
     return StoredValues<Value>(open(path, table_column<Value>(path)));

@@ -177,9 +177,15 @@ class ResultReader {
   std::uint64_t table_hash() const;
 
   /// Reads `count` rows from row `first` on into `out`, on the threads of the caller's arena.
-  /// Columns that the result does not have become empty. before: the order of the rows before them.
+  /// Columns that the result does not have become empty. order: that of the rows before them, which
+  /// takes these in.
   template <typename Rows>
-  void read(std::uint64_t first, std::size_t count, Rows& out, OrderOf<Rows> before = {}) const;
+  void read(std::uint64_t first, std::size_t count, Rows& out, OrderOf<Rows>& order) const;
+  template <typename Rows>
+  void read(std::uint64_t first, std::size_t count, Rows& out) const {
+    OrderOf<Rows> order;
+    read(first, count, out, order);
+  }
 
   /// Reads a whole table; without rows where the result does not have it.
   template <typename Rows>
@@ -239,7 +245,6 @@ class RowStream {
   bool read(Rows& rows) {
     const auto count = std::min<std::uint64_t>(batch_rows_, reader_->rows<Rows>() - next_);
     reader_->read(next_, count, rows, order_);
-    order_.take(rows);
     next_ += count;
     return count > 0;
   }

@@ -75,15 +75,15 @@ void ResultReader::read_column(const Column<Rows, Value>& column, const StoredVa
 
 template <typename Rows>
 void ResultReader::read(std::uint64_t first, std::size_t count, Rows& out,
-                        OrderOf<Rows> before) const {
+                        OrderOf<Rows>& order) const {
   for_each_column<Rows>(table<Rows>().columns, [&](const auto& column, const auto& stored) {
     auto& values = out.*column.values;
     values.resize(stored ? count : 0);
     if (stored) read_column(column, *stored, first, values);
   });
   const RowsRead read{name(), header_, Table<Rows>::kGroup, first};
-  before.check(read, out);
-  Table<Rows>::check(read, out);
+  order.check(read, out);
+  if constexpr (requires { Table<Rows>::check(read, out); }) Table<Rows>::check(read, out);
 }
 
 template <typename Rows, typename Value>
@@ -101,16 +101,16 @@ std::vector<Value> ResultReader::column(std::vector<Value> Rows::*values) const 
 
 template std::uint64_t ResultReader::table_hash<Collisions>() const;
 template void ResultReader::read(std::uint64_t, std::size_t, Collisions&,
-                                 OrderOf<Collisions>) const;
+                                 OrderOf<Collisions>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, Clearances&,
-                                 OrderOf<Clearances>) const;
+                                 OrderOf<Clearances>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, ProfileRows&,
-                                 OrderOf<ProfileRows>) const;
-template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, OrderOf<Nearby>) const;
+                                 OrderOf<ProfileRows>&) const;
+template void ResultReader::read(std::uint64_t, std::size_t, Nearby&, OrderOf<Nearby>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, UnseenCubes&,
-                                 OrderOf<UnseenCubes>) const;
+                                 OrderOf<UnseenCubes>&) const;
 template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&,
-                                 OrderOf<SweptCells>) const;
+                                 OrderOf<SweptCells>&) const;
 template std::vector<std::uint64_t> ResultReader::column(
     std::vector<std::uint64_t> Collisions::*) const;
 template std::vector<Vec3> ResultReader::column(std::vector<Vec3> Collisions::*) const;

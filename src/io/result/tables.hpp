@@ -145,8 +145,6 @@ struct Table<Nearby> : AscendingSources<Nearby> {
                                   check_bodies, "body of that pose"},
       Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>, "class of the point"}};
-
-  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <>
@@ -167,8 +165,6 @@ struct Table<Clearances> : AscendingSources<Clearances> {
                                   check_bodies, "body of that pose"},
       Column<Rows, std::uint8_t>{"class", &Rows::point_class, has_classes,
                                  check_with_rows<std::uint8_t>, "class of the point"}};
-
-  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <>
@@ -223,7 +219,6 @@ struct Table<UnseenCubes> {
     return before < after;
   }
   static constexpr const char* kExpectedOrder = "a cube after the one of the row before";
-  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <>
@@ -243,7 +238,6 @@ struct Table<SweptCells> {
     return before < after;
   }
   static constexpr const char* kExpectedOrder = "a cell after the one of the row before";
-  static void check(const RowsRead&, const Rows&) {}
 };
 
 template <typename Rows>

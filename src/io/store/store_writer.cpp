@@ -118,7 +118,7 @@ void GrowingFile::trim() {
 /// scale-offset.
 hdf5::Id create_packed(const hdf5::Id& file, const std::string& group, std::size_t column,
                        std::uint64_t cells, std::uint32_t cell_points) {
-  if (H5Lexists(file.get(), group.c_str(), H5P_DEFAULT) <= 0) hdf5::create_group(file, group);
+  hdf5::require_group(file, group);
   const std::array types{H5T_STD_I32LE, H5T_STD_I32LE, H5T_STD_I32LE,
                          H5T_STD_U64LE, H5T_STD_U8LE,  H5T_STD_U32LE};
   const std::array<hsize_t, 2> size{cells, cell_points};
