@@ -9,26 +9,30 @@ std::uint32_t block_count(const Cell& cell) {
   return static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
 }
 
+/// The two halves of a node in a cell.
+std::array<EnvironmentNode, 2> halves(const EnvironmentNode& node) {
+  const auto left = static_cast<std::uint32_t>(left_count(node.block_count, 1));
+  return {EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block, left},
+          EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block + left,
+                          node.block_count - left}};
+}
+
+/// The box of a node in a cell; fills those of the inner nodes in it.
+BlockBox unite_blocks(const BlockBoxes& blocks, const EnvironmentNode& node,
+                      std::span<BlockBox> inner) {
+  if (node.is_block()) return blocks[node.first_block];
+  const auto [left, right] = halves(node);
+  return inner[EnvironmentTree::inner_in_cell(node)] =
+             unite_blocks(blocks, left, inner).united(unite_blocks(blocks, right, inner));
+}
+
 }  // namespace
 
 EnvironmentTree::EnvironmentTree(const PackedCloud& cloud)
-    : cloud_(cloud),
-      cells_(cloud.cells()),
-      blocks_(cloud.blocks()),
-      blocks_per_cell_(cloud.blocks_per_cell()) {}
+    : cloud_(cloud), cells_(cloud.cells()), blocks_per_cell_(cloud.blocks_per_cell()) {}
 
 void EnvironmentTree::fill_inner_boxes(std::uint32_t cell, std::span<BlockBox> inner) const {
-  unite_blocks(cell, 0, block_count(cells_[cell]), inner);
-}
-
-BlockBox EnvironmentTree::unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count,
-                                       std::span<BlockBox> inner) const {
-  if (count == 1) return blocks_[block_index(cell, first)];
-  const auto left = static_cast<std::uint32_t>(left_count(count, 1));
-  const BlockBox box = unite_blocks(cell, first, left, inner)
-                           .united(unite_blocks(cell, first + left, count - left, inner));
-  inner[inner_in_cell({EnvironmentNode::kInCell, cell, first, count})] = box;
-  return box;
+  unite_blocks(cloud_.blocks(cell), this->cell(cell), inner);
 }
 
 EnvironmentNode EnvironmentTree::from_top(std::uint32_t index) const {
@@ -45,10 +49,7 @@ std::array<EnvironmentNode, 2> EnvironmentTree::children(const EnvironmentNode& 
   if (node.top != EnvironmentNode::kInCell) {
     return {from_top(node.top + 1), from_top(cloud_.tree()[node.top].right)};
   }
-  const auto left = static_cast<std::uint32_t>(left_count(node.block_count, 1));
-  return {EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block, left},
-          EnvironmentNode{EnvironmentNode::kInCell, node.cell, node.first_block + left,
-                          node.block_count - left}};
+  return halves(node);
 }
 
 Box EnvironmentTree::box(const EnvironmentNode& node, std::span<const BlockBox> inner) const {
@@ -56,9 +57,9 @@ Box EnvironmentTree::box(const EnvironmentNode& node, std::span<const BlockBox> 
   if (node.top != EnvironmentNode::kInCell) {
     return position_box(quantisation, cloud_.tree()[node.top].box);
   }
-  const BlockBox& inside = node.block_count == 1 ? blocks_[block_index(node.cell, node.first_block)]
-                                                 : inner[inner_in_cell(node)];
-  return position_box(quantisation, decode_block_box(cells_[node.cell].box, inside));
+  if (node.is_block()) return cloud_.block_box(node.cell, node.first_block);
+  return position_box(quantisation,
+                      decode_block_box(cells_[node.cell].box, inner[inner_in_cell(node)]));
 }
 
 }  // namespace clearway

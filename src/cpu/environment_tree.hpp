@@ -63,12 +63,9 @@ class EnvironmentTree {
 
  private:
   EnvironmentNode from_top(std::uint32_t index) const;
-  BlockBox unite_blocks(std::uint32_t cell, std::uint32_t first, std::uint32_t count,
-                        std::span<BlockBox> inner) const;
 
   const PackedCloud& cloud_;
   std::span<const Cell> cells_;
-  std::span<const BlockBox> blocks_;
   std::uint32_t blocks_per_cell_;
 };
 

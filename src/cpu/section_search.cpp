@@ -124,7 +124,7 @@ void SectionSearch::search(std::uint32_t cell,
                            std::uint32_t end) const {
   const Cell& of = cloud_.cells()[cell];
   const Quantisation& quantisation = cloud_.quantisation();
-  const std::span boxes = cloud_.blocks().subspan(std::size_t{cell} * cloud_.blocks_per_cell());
+  const BlockBoxes boxes = cloud_.blocks(cell);
   Points points;
   for (std::uint32_t block = first; block < end; ++block) {
     const std::uint64_t all = searched.empty() ? ~std::uint64_t{0} : searched[block];

@@ -128,10 +128,8 @@ class Sampler {
   void visit(std::uint32_t cell, const Visit& visit) const {
     const Cell& info = store_.cells()[cell];
     if (places_[cell].empty()) return;
-    const std::uint64_t first_block = std::uint64_t{cell} * store_.blocks_per_cell();
     for (std::uint32_t first = 0; first < info.count; first += kBlockPoints) {
-      const BlockBox& packed = store_.blocks()[first_block + first / kBlockPoints];
-      const Box box = position_box(store_.quantisation(), decode_block_box(info.box, packed));
+      const Box box = store_.block_box(cell, first / kBlockPoints);
       const double distance = path_.distance(box, places_[cell]);
       if (distance > path_.reach()) continue;
       const double far = std::max(1.0, distance / path_.dense_reach());

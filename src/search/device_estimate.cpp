@@ -37,10 +37,8 @@ class NearPoints {
   void look_at(std::uint32_t index) {
     const Cell& cell = cloud_.cells()[index];
     const auto blocks = static_cast<std::uint32_t>(divide_up(cell.count, kBlockPoints));
-    const std::size_t first = std::size_t{index} * cloud_.blocks_per_cell();
     for (std::uint32_t block = 0; block < blocks; ++block) {
-      const QuantumBox box = decode_block_box(cell.box, cloud_.blocks()[first + block]);
-      const Vec3 middle = position_box(cloud_.quantisation(), box).centre();
+      const Vec3 middle = cloud_.block_box(index, block).centre();
       if (!reach_.contains(middle) ||
           !model_.contains(pose_.rotated_back(middle - pose_.position())))
         continue;

@@ -64,7 +64,6 @@ template <typename Element>
 double work_of(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
                const PlannedCell& planned, std::size_t most_blocks) {
   const Cell& cell = cloud.cells()[planned.cell];
-  const std::size_t first = std::size_t{planned.cell} * cloud.blocks_per_cell();
   const std::size_t blocks = divide_up(cell.count, kBlockPoints);
   const std::size_t looks = std::min(blocks, most_blocks);
   std::vector<std::uint32_t> kept;
@@ -72,8 +71,8 @@ double work_of(const PackedCloud& cloud, const SweepFilterOf<Element>& filter,
   double work = 0;
   for (std::size_t i = 0; i < looks; ++i) {
     const std::size_t block = (2 * i + 1) * blocks / (2 * looks);
-    const QuantumBox box = decode_block_box(cell.box, cloud.blocks()[first + block]);
-    if (filter.narrow(position_box(cloud.quantisation(), box), planned.nodes, kept, not_counted)) {
+    const Box box = cloud.block_box(planned.cell, static_cast<std::uint32_t>(block));
+    if (filter.narrow(box, planned.nodes, kept, not_counted)) {
       continue;  // the whole block collides
     }
     work += work_of_poses(pose_count(filter.motion(), kept));

@@ -97,8 +97,7 @@ PageShape stage_page(const PackedCloud& cloud, std::span<const PlannedCell> cell
     }
     headers.append(std::span<const PageCell>(&header, 1));
     nodes.append(std::span(planned.nodes));
-    blocks.append(cloud.blocks().subspan(std::size_t{planned.cell} * shape.blocks_per_cell,
-                                         shape.blocks_per_cell));
+    blocks.append(cloud.blocks(planned.cell).bytes());
     if (!shape.masked) continue;
     masks_of->mask(planned.cell, searched,
                    [&] { return packed ? *packed : cloud.coordinates(planned.cell); });

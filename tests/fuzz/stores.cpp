@@ -93,7 +93,9 @@ class OneCellCloud final : public PackedCloud {
   const Quantisation& quantisation() const override { return quantisation_; }
   std::span<const Cell> cells() const override { return {&cell_, 1}; }
   std::span<const TreeNode> tree() const override { return {&node_, 1}; }
-  std::span<const BlockBox> blocks() const override { return blocks_; }
+  BlockBoxes blocks(std::uint32_t) const override {
+    return BlockBoxes(std::as_bytes(std::span(blocks_)));
+  }
   std::array<Chunk, 3> coordinates(std::uint32_t) const override {
     const Chunk chunk(chunk_, cell_.count);
     return {chunk, chunk, chunk};
@@ -164,7 +166,7 @@ struct Edit {
     std::memcpy(&value, &bytes[3], 8);
   }
   static constexpr const char* kColumns[] = {"cells/count", "cells/box",   "cells/address",
-                                             "cells/bytes", "cells/xxh64", "blocks/box",
+                                             "cells/bytes", "cells/xxh64", "blocks/bytes",
                                              "tree/nodes"};
   static constexpr const char* kFacts[] = {
       "point_count", "input_points", "cell_points", "points_hash", "scale",    "offset",
@@ -225,21 +227,21 @@ struct SoundStore {
     write_las(folder / "a.las", cube_cloud(300, -4000, 4000, 3));
     convert_quietly(conversion_of({folder / "a.las"}, folder / "a.h5"));
     bytes = bytes_of(folder / "a.h5");
-    index = StoreReader(folder / "a.h5").index();
+    chunks = StoreReader(folder / "a.h5").chunks();
   }
 
   std::string bytes;
-  ChunkIndex index;
+  ChunkIndexes chunks;
 };
 
-/// Sets the hashes of packed chunks to those of `bytes`.
-void rehash_chunks(const std::filesystem::path& path, std::string_view bytes,
+/// Sets the hashes of the chunks of a group to those of `bytes`.
+void rehash_chunks(const std::filesystem::path& path, std::string_view bytes, const char* group,
                    const ChunkIndex& index) {
   std::vector<std::uint64_t> hashes = index.xxh64;
   for (std::size_t i = 0; i < hashes.size(); ++i) {
     hashes[i] = xxh64(std::as_bytes(std::span(bytes.substr(index.address[i], index.bytes[i]))));
   }
-  change_column(path, "cells/xxh64", hashes);
+  change_column(path, std::string(group) + "/xxh64", hashes);
 }
 
 /// A sound store whose hashes hold but whose numbers are arbitrary, so that nothing but the numbers
@@ -251,15 +253,18 @@ void edit_store(Bytes input) {
     edits.emplace_back(input);
   }
   std::string bytes = sound.bytes;
-  const ChunkIndex& index = sound.index;
   for (const Edit& edit : edits) {
     if (!edit.is_of_chunk()) continue;
+    const ChunkIndex& index = sound.chunks[edit.where % 5 == 0 ? 1 : 0];
     const std::size_t chunk = edit.where % index.bytes.size();
     const std::size_t at = edit.where / index.bytes.size() % (index.bytes[chunk] - 8);
     std::memcpy(bytes.data() + index.address[chunk] + at, &edit.value, 8);
   }
   const MemoryFile file(bytes);
-  if (bytes != sound.bytes) rehash_chunks(file.path(), bytes, index);
+  if (bytes != sound.bytes) {
+    rehash_chunks(file.path(), bytes, "cells", sound.chunks[0]);
+    rehash_chunks(file.path(), bytes, "blocks", sound.chunks[1]);
+  }
   // Facts come last, because the columns are listed among them.
   std::ranges::stable_sort(edits, {}, &Edit::what);
   for (const Edit& edit : edits) {

@@ -25,7 +25,7 @@ void check_page(const PackedCloud& cloud, std::span<const PlannedCell> cells, co
     CHECK(cell.box == cloud.cells()[cell.cell].box);
     REQUIRE(cell.node_count == cells[i].nodes.size());
     CHECK(std::equal(cells[i].nodes.begin(), cells[i].nodes.end(), page.nodes(cell)));
-    const auto blocks = cloud.blocks().subspan(cell.cell * cloud.blocks_per_cell());
+    const BlockBoxes blocks = cloud.blocks(cell.cell);
     for (std::uint32_t b = 0; b < cloud.blocks_per_cell(); ++b) {
       wrong += page.blocks(i)[b] != blocks[b];
     }

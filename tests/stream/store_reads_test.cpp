@@ -65,7 +65,7 @@ TEST_CASE("a flipped bit in any of the three chunks is found and named") {
       std::uint64_t at = 0;
       {
         const StoreReader store(small.path);
-        at = store.index().address[4 * 5 + axis] + byte;
+        at = store.chunks().of(axis, 5).address + byte;
       }
       small.flip(at);
       const StoreReader store(small.path);
@@ -80,7 +80,7 @@ TEST_CASE("a store that was cut short while open is refused with the byte where 
   const SmallStore small;
   const StoreReader store(small.path);
   const auto cell = static_cast<std::uint32_t>(store.cells().size() - 1);
-  const std::uint64_t end = store.index().address[4 * cell + 1] + 3;
+  const std::uint64_t end = store.chunks().of(kY, cell).address + 3;
   REQUIRE(::truncate(small.path.c_str(), static_cast<off_t>(end)) == 0);
   check_refused([&] { return read(store, cell); },
                 std::string("a.h5 ... ends at byte ") + std::to_string(end));

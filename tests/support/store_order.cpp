@@ -83,8 +83,7 @@ class Structure {
     const auto points = points_of_cells(store_, index, 1);
     QuantumBox box = box_of(points[0]);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const BlockBox& block =
-          store_.blocks()[std::size_t{index} * store_.blocks_per_cell() + i / kBlockPoints];
+      const BlockBox block = store_.blocks(index)[i / kBlockPoints];
       const QuantumBox own = box_of(points[i]);
       const QuantumBox decoded = decode_block_box(cell.box, block);
       expect(decoded.united(own) == decoded, "a point lies outside its block's box");

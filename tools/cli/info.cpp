@@ -62,7 +62,7 @@ ordered_json classes_json(const StoreMetadata& metadata) {
 ordered_json describe(const StoreReader& store) {
   const StoreMetadata& m = store.metadata();
   std::uint64_t packed = 0;
-  for (const std::uint32_t bytes : store.index().bytes) packed += bytes;
+  for (const std::uint32_t bytes : store.chunks()[0].bytes) packed += bytes;
   ordered_json description{{"kind", "store"},
                            {"version", kStoreKind.version},
                            {"points", m.point_count},

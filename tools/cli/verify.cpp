@@ -10,11 +10,11 @@
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
-#include "io/files/hdf5.hpp"
 #include "io/files/json.hpp"
 #include "io/result/check_results.hpp"
 #include "io/result/journal.hpp"
 #include "io/section/section_file.hpp"
+#include "io/store/file_kind.hpp"
 #include "io/store/verify_store.hpp"
 #include "stream/search_journal.hpp"
 
@@ -47,12 +47,13 @@ Findings findings_of(const std::filesystem::path& file) {
   ConsoleProgress progress;
   try {
     if (is_journal(file) || is_empty_journal(file)) return verify_journal(file);
-    if (hdf5::holds(file, "collisions")) {
+    const FileKind kind = describe_file(file).kind;
+    if (kind == FileKind::kResult) {
       if (const auto fault = verify_result(ResultReader(file, Parts::kAccepted), progress))
         return {{*fault}};
       return {};
     }
-    if (hdf5::holds(file, "section")) {
+    if (kind == FileKind::kSection) {
       read_section(file);
       return {};
     }

@@ -299,14 +299,13 @@ double PackedCloud::typical_block() const {
   const std::uint64_t a_cell = std::max<std::uint64_t>(1, kBlockSample / count);
   const std::uint64_t stride = divide_up(count, kBlockSample);
   std::vector<double> diagonals;
-  for (std::uint64_t index = 0; index < count; index += stride) {
+  for (std::uint64_t at = 0; at < count; at += stride) {
+    const auto index = static_cast<std::uint32_t>(at);
     const Cell& cell = cells()[index];
     const std::uint64_t in_cell = divide_up(cell.count, kBlockPoints);
     for (std::uint64_t i = 0; i < std::min(in_cell, a_cell); ++i) {
       const std::uint64_t block = i * in_cell / std::min(in_cell, a_cell);
-      const BlockBox& box = blocks()[index * blocks_per_cell() + block];
-      diagonals.push_back(
-          2 * half_diagonal(position_box(quantisation(), decode_block_box(cell.box, box))));
+      diagonals.push_back(2 * half_diagonal(block_box(index, static_cast<std::uint32_t>(block))));
     }
   }
   const auto middle = diagonals.begin() + static_cast<std::ptrdiff_t>(diagonals.size() / 2);

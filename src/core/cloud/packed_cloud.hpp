@@ -193,6 +193,22 @@ extern template class PackedChunk<std::uint32_t>;
 extern template class PackedChunk<std::uint64_t>;
 extern template class PackedChunk<std::uint8_t>;
 
+/// The block boxes of a cell where they lie in memory, which need not be aligned: one for each
+/// block of a full cell. Those of blocks past the cell's count are zero.
+class BlockBoxes {
+ public:
+  explicit BlockBoxes(std::span<const std::byte> bytes) : bytes_(bytes) {}
+  BlockBox operator[](std::size_t block) const {
+    BlockBox box;
+    std::memcpy(&box, bytes_.data() + block * sizeof box, sizeof box);
+    return box;
+  }
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::span<const std::byte> bytes_;
+};
+
 /// The environment as the engines see it: packed cells in k-d order. An *entry* is a place for a
 /// point in that order: entry = cell * cell_entries() + index in the cell, so that block b of a
 /// cell is 64 entries, one word of a HitSet. Entries past a cell's count are unused.
@@ -206,9 +222,9 @@ class PackedCloud {
   virtual std::span<const Cell> cells() const = 0;
   /// The tree over cells, in preorder. Empty for an empty cloud.
   virtual std::span<const TreeNode> tree() const = 0;
-  /// Block boxes of all cells, divide_up(cell_points, kBlockPoints) entries for each cell; entries
-  /// of blocks past a cell's count are unused.
-  virtual std::span<const BlockBox> blocks() const = 0;
+  /// The block boxes of a cell, which are checked against their hash at the first touch. Thread
+  /// safe. Throws as coordinates() does.
+  virtual BlockBoxes blocks(std::uint32_t cell) const = 0;
 
   /// The packed x, y and z of a cell, which are checked against the cell's hash at the first touch.
   /// Thread safe. Throws InputError naming file and cell if the bytes are not those that were
@@ -261,8 +277,13 @@ class PackedCloud {
   /// has at least one point.
   virtual double typical_block() const;
 
-  /// Bytes of memory that cells, tree and blocks occupy.
+  /// Bytes of memory that cells and tree occupy, and the blocks of a cloud that lies in memory.
   virtual std::uint64_t allocated_bytes() const { return 0; }
+
+  /// The box of a block of a cell. Throws as blocks() does.
+  Box block_box(std::uint32_t cell, std::uint32_t block) const {
+    return position_box(quantisation(), decode_block_box(cells()[cell].box, blocks(cell)[block]));
+  }
 
   std::uint32_t blocks_per_cell() const {
     return static_cast<std::uint32_t>(divide_up(cell_points(), kBlockPoints));

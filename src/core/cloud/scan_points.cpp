@@ -72,13 +72,12 @@ class Visit {
   void look_into(std::uint32_t cell) {
     const Cell& here = cloud_.cells()[cell];
     const StepRange range(position_box(cloud_.quantisation(), here.box), place_, 0);
+    const BlockBoxes blocks = cloud_.blocks(cell);
     const ScanPoints::Chunks* chunks = nullptr;
     for (std::uint32_t first = 0; first < here.count && !stopped_; first += kBlockPoints) {
-      const std::uint64_t at =
-          std::uint64_t{cell} * cloud_.blocks_per_cell() + first / kBlockPoints;
-      if (!range.meets(cloud_.blocks()[at])) continue;
-      const QuantumBox block = decode_block_box(here.box, cloud_.blocks()[at]);
-      if (!may_matter(position_box(cloud_.quantisation(), block))) continue;
+      const std::uint32_t block = first / kBlockPoints;
+      if (!range.meets(blocks[block])) continue;
+      if (!may_matter(cloud_.block_box(cell, block))) continue;
       if (blocks_++ == most_blocks_) {
         stopped_ = true;
         return;

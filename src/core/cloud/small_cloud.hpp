@@ -33,7 +33,10 @@ class SmallCloud : public PackedCloud {
   const Quantisation& quantisation() const override { return quantisation_; }
   std::span<const Cell> cells() const override { return cells_; }
   std::span<const TreeNode> tree() const override { return tree_; }
-  std::span<const BlockBox> blocks() const override { return blocks_; }
+  BlockBoxes blocks(std::uint32_t cell) const override {
+    return BlockBoxes(std::as_bytes(
+        std::span(blocks_).subspan(std::size_t{cell} * blocks_per_cell(), blocks_per_cell())));
+  }
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::uint64_t packed_bytes(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> read_packed(std::uint32_t cell,

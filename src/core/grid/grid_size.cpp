@@ -20,11 +20,11 @@ double surface_density(const PackedCloud& cloud) {
   const std::size_t blocks = cloud.cells().size() * cloud.blocks_per_cell();
   const std::size_t step = std::max<std::size_t>(1, blocks / kSamples);
   for (std::size_t i = 0; i < blocks; i += step) {
-    const Cell& cell = cloud.cells()[i / cloud.blocks_per_cell()];
+    const auto cell = static_cast<std::uint32_t>(i / cloud.blocks_per_cell());
+    const auto block = static_cast<std::uint32_t>(i % cloud.blocks_per_cell());
     // Blocks that are not full are left out.
-    if ((i % cloud.blocks_per_cell() + 1) * kBlockPoints > cell.count) continue;
-    const Box box =
-        position_box(cloud.quantisation(), decode_block_box(cell.box, cloud.blocks()[i]));
+    if ((block + 1) * kBlockPoints > cloud.cells()[cell].count) continue;
+    const Box box = cloud.block_box(cell, block);
     double sides[3] = {box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
     std::sort(sides, sides + 3);
     const double area = sides[1] * sides[2];

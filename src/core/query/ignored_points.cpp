@@ -186,7 +186,7 @@ void IgnoredPoints::leave_out_box(std::uint32_t cell, const QuantumBox& box,
                                   const std::array<PackedChunk<std::int32_t>, 3>& coordinates,
                                   std::span<std::uint64_t> searched) const {
   const QuantumBox& all = cloud_.cells()[cell].box;
-  const BlockBox* blocks = cloud_.blocks().data() + std::size_t{cell} * cloud_.blocks_per_cell();
+  const BlockBoxes blocks = cloud_.blocks(cell);
   for (std::uint32_t block = 0; block < searched.size(); ++block) {
     if (searched[block] == 0) continue;
     const Place place = place_of(box, decode_block_box(all, blocks[block]));

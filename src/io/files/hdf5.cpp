@@ -235,14 +235,6 @@ Id open_dataset(const Id& parent, const std::string& name, const std::string& fi
   return {opened, H5Dclose, name};
 }
 
-bool holds(const std::filesystem::path& path, const std::string& name) {
-  const QuietScope quiet;
-  const Id file = open_file(path);
-  const htri_t found = H5Lexists(file.get(), name.c_str(), H5P_DEFAULT);
-  if (found < 0) malformed(path.string(), name, "an intact group (" + reason() + ")");
-  return found > 0;
-}
-
 void require_group(const Id& parent, const std::string& name) {
   if (H5Lexists(parent.get(), name.c_str(), H5P_DEFAULT) > 0) return;
   const Id creation = untimed(H5P_GROUP_CREATE);

@@ -89,8 +89,6 @@ Id create_file(const std::filesystem::path& path);
 /// Opens a file for reading. Throws InputError when it does not start as create_file() makes it,
 /// does not have the length that it states, or cannot be opened as HDF5.
 Id open_file(const std::filesystem::path& path);
-/// Whether an HDF5 file has an object of this name at its root. Throws like open_file.
-bool holds(const std::filesystem::path& path, const std::string& name);
 /// Creates a group unless it is there already.
 void require_group(const Id& parent, const std::string& name);
 /// Opens a dataset of the file itself, whose type, shape and storage are not checked. Throws

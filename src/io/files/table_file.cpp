@@ -382,6 +382,7 @@ void TableFileWriter::finish(Json facts) {
 }
 
 const hdf5::Id& TableFileWriter::file() const { return state_->file; }
+void TableFileWriter::written() { state_->written(); }
 
 struct TableFile::State {
   State(const std::filesystem::path& path, std::span<const TableFileKind> kinds)

@@ -193,6 +193,8 @@ class TableFileWriter {
 
   /// The open file, for objects that are no tables.
   const hdf5::Id& file() const;
+  /// Starts the transfer to the disk of what was written to such objects, while more is computed.
+  void written();
 
  private:
   friend class TableWriter;

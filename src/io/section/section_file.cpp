@@ -58,9 +58,6 @@ static void keep_facts(HeaderValues& values, SectionData& section) {
 
 namespace {
 
-constexpr TableFileKind kKind{"clearway section", 4, "a section", "clearway section find",
-                              "run section find again"};
-
 std::vector<TableColumn> cell_columns() {
   return {table_column<std::int32_t>("j"), table_column<std::int32_t>("k"),
           table_column<std::uint32_t>("first_pose")};
@@ -234,7 +231,7 @@ std::uint64_t SectionRows::total() const {
 
 void write_section(const SectionData& section, const SectionRows& blocked,
                    const std::optional<SectionRows>& unknown, const std::filesystem::path& path) {
-  TableFileWriter file(path, kKind);
+  TableFileWriter file(path, kSectionKind);
   file.add_column("path", "chainage", section.chainage);
   file.add_column("bins", "number", section.bins);
   file.add_column("bins", "cells", blocked.counts);
@@ -248,7 +245,7 @@ void write_section(const SectionData& section, const SectionRows& blocked,
 }
 
 SectionData read_section(const std::filesystem::path& path) {
-  const TableFile file(path, kKind);
+  const TableFile file(path, kSectionKind);
   const std::string& name = file.name();
   SectionData section;
   HeaderValues values(file.header(), name);

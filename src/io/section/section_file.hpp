@@ -8,8 +8,12 @@
 #include <vector>
 
 #include "clearway/section.hpp"
+#include "io/files/table_file.hpp"
 
 namespace clearway {
+
+inline constexpr TableFileKind kSectionKind{"clearway section", 4, "a section",
+                                            "clearway section find", "run section find again"};
 
 /// The cells of a section as they are written: bin by bin, so that they need not be held at once.
 struct SectionRows {

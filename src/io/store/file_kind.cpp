@@ -10,26 +10,28 @@
 
 #include "clearway/error.hpp"
 #include "io/files/file.hpp"
-#include "io/files/hdf5.hpp"
 #include "io/files/text_lines.hpp"
 #include "io/files/text_number.hpp"
 #include "io/result/journal.hpp"
+#include "io/result/result.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/text/text_table.hpp"
+#include "io/section/section_file.hpp"
+#include "io/store/store_metadata.hpp"
 
 namespace clearway {
 namespace {
 
 constexpr std::size_t kLookedAt = 1 << 16;  ///< bytes that are examined
 
-FileDescription describe_hdf5(const std::filesystem::path& path) {
-  try {
-    if (hdf5::holds(path, "collisions")) return {FileKind::kResult, "a result"};
-    if (hdf5::holds(path, "section")) return {FileKind::kSection, "a section"};
-    if (hdf5::holds(path, "cells")) return {FileKind::kStore, "a store"};
-  } catch (const Error&) {
-    // The file is damaged or from another program, which cannot be distinguished here.
-  }
+/// Describes an HDF5 file by its attribute `format`, which is written first.
+FileDescription describe_hdf5(std::string_view bytes) {
+  const auto is = [&](const TableFileKind& kind) {
+    return bytes.find(kind.format) != std::string_view::npos;
+  };
+  if (std::ranges::any_of(kResultKinds, is)) return {FileKind::kResult, "a result"};
+  if (is(kSectionKind)) return {FileKind::kSection, "a section"};
+  if (is(kStoreKind)) return {FileKind::kStore, "a store"};
   return {FileKind::kOtherHdf5, "an HDF5 file, but no sound store or result"};
 }
 
@@ -124,7 +126,7 @@ FileDescription describe_file(const std::filesystem::path& path) {
   file.read_at(0, bytes);
   if (bytes.empty()) return {FileKind::kEmpty, "empty"};
   const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  if (text.starts_with("\x89HDF")) return describe_hdf5(path);
+  if (text.starts_with("\x89HDF")) return describe_hdf5(text.substr(0, 1024));
   if (is_journal(path))
     return {FileKind::kJournal, "the journal of an unfinished run or conversion"};
   if (format_of_content(std::span(bytes).first(std::min<std::size_t>(16, bytes.size())))) {

@@ -20,7 +20,7 @@ namespace clearway {
 
 class HeaderValues;
 
-inline constexpr TableFileKind kStoreKind{"clearway store", 3, "a store", "clearway convert",
+inline constexpr TableFileKind kStoreKind{"clearway store", 4, "a store", "clearway convert",
                                           "convert again"};
 
 /// An input file of a conversion, as recorded in the store.
@@ -163,18 +163,18 @@ void keep_facts(HeaderValues& values, StoreCorridor& near);
 inline constexpr std::uint32_t kMostCellPoints = 1U << 20;
 
 /// The packed columns of a store, of which it may lack the last two.
-enum PointColumn : std::uint8_t { kX, kY, kZ, kSource, kClass, kOrigin };
-inline constexpr std::size_t kPointColumns = 6;
-inline constexpr const char* kPointColumnNames[kPointColumns] = {"x",      "y",     "z",
-                                                                 "source", "class", "origin"};
+enum PointColumn : std::uint8_t { kX, kY, kZ, kSource, kBlocks, kClass, kOrigin };
+inline constexpr std::size_t kPointColumns = 7;
+inline constexpr const char* kPointColumnNames[kPointColumns] = {"x",   "y",     "z",     "source",
+                                                                 "box", "class", "origin"};
 
 /// The columns whose chunks have one index, and the group in which it lies.
 struct ChunkGroup {
   const char* name;
   std::size_t first, columns;
 };
-inline constexpr std::array<ChunkGroup, 3> kChunkGroups{
-    {{"cells", kX, 4}, {"classes", kClass, 1}, {"origins", kOrigin, 1}}};
+inline constexpr std::array<ChunkGroup, 4> kChunkGroups{
+    {{"cells", kX, 4}, {"blocks", kBlocks, 1}, {"classes", kClass, 1}, {"origins", kOrigin, 1}}};
 
 /// Addresses in the file, sizes and hashes of packed chunks, cell by cell, and for each cell column
 /// by column. Empty where a store lacks the columns.
@@ -184,6 +184,11 @@ struct ChunkIndex {
   std::vector<std::uint64_t> xxh64;
 };
 
+/// Bytes of the chunk of a cell's block boxes: one for each block of a full cell, and a checksum.
+constexpr std::size_t block_chunk_bytes(std::uint32_t cell_points) {
+  return divide_up(cell_points, kBlockPoints) * sizeof(BlockBox) + sizeof(std::uint32_t);
+}
+
 /// One packed chunk.
 struct StoredChunk {
   std::uint64_t address;
@@ -192,9 +197,9 @@ struct StoredChunk {
 };
 
 /// The index of each of kChunkGroups.
-struct ChunkIndexes : std::array<ChunkIndex, 3> {
+struct ChunkIndexes : std::array<ChunkIndex, 4> {
   StoredChunk of(std::size_t column, std::size_t cell) const {
-    const std::size_t group = column < kClass ? 0 : column - kSource;
+    const std::size_t group = column < kBlocks ? 0 : column - kSource;
     const ChunkIndex& index = (*this)[group];
     const std::size_t i = cell * kChunkGroups[group].columns + column - kChunkGroups[group].first;
     return {index.address[i], index.bytes[i], index.xxh64[i]};
@@ -204,11 +209,6 @@ struct ChunkIndexes : std::array<ChunkIndex, 3> {
 template <>
 struct NumbersOf<QuantumBox> {
   using Number = std::int32_t;
-  static constexpr std::uint32_t kCount = 6;
-};
-template <>
-struct NumbersOf<BlockBox> {
-  using Number = std::uint16_t;
   static constexpr std::uint32_t kCount = 6;
 };
 template <>

@@ -118,6 +118,11 @@ void check_cells(const StoreIndex& index, std::uint64_t file_bytes, const std::s
     }
     points += count;
   }
+  for (const std::uint32_t bytes : index.chunks[1].bytes) {
+    if (bytes == block_chunk_bytes(cell_points)) continue;
+    refuse(name, "a cell has " + std::to_string(bytes) + " bytes of block boxes, expected " +
+                     std::to_string(block_chunk_bytes(cell_points)));
+  }
   for (const ChunkIndex& of : index.chunks) {
     for (std::size_t i = 0; i < of.address.size(); ++i) {
       if (of.address[i] <= file_bytes && of.bytes[i] <= file_bytes - of.address[i]) continue;
@@ -146,14 +151,13 @@ StoreIndex read_index(const std::filesystem::path& path, std::uint64_t file_byte
   const auto count = file.all<std::uint32_t>("cells/count");
   const auto box = file.all<QuantumBox>("cells/box");
   index.chunks[0] = read_chunks<4>(file, "cells");
-  if (metadata.classes) index.chunks[1] = read_chunks<1>(file, "classes");
-  if (metadata.origins) index.chunks[2] = read_chunks<1>(file, "origins");
+  index.chunks[1] = read_chunks<1>(file, "blocks");
+  if (metadata.classes) index.chunks[2] = read_chunks<1>(file, "classes");
+  if (metadata.origins) index.chunks[3] = read_chunks<1>(file, "origins");
   index.top = file.all<TopNode>("tree/nodes");
-  index.blocks = file.all<BlockBox>("blocks/box");
   const std::size_t cells = count.size();
-  bool fits = box.size() == cells &&
-              index.blocks.size() == cells * divide_up(metadata.cell_points, kBlockPoints);
-  const std::array has{true, metadata.classes.has_value(), metadata.origins.has_value()};
+  bool fits = box.size() == cells;
+  const std::array has{true, true, metadata.classes.has_value(), metadata.origins.has_value()};
   for (std::size_t group = 0; group < has.size(); ++group) {
     const auto& [address, bytes, xxh64] = index.chunks[group];
     const std::size_t chunks = has[group] ? cells * kChunkGroups[group].columns : 0;
@@ -176,8 +180,9 @@ StoreReader::StoreReader(const std::filesystem::path& path)
       read_(index_.cells.size()) {
   checked_[0].resize(index_.cells.size());
   checked_[1].resize(index_.cells.size());
-  checked_[2].resize(index_.chunks[1].address.size());
-  checked_[3].resize(index_.chunks[2].address.size());
+  for (std::size_t group = 1; group < kChunkGroups.size(); ++group) {
+    checked_[group + 1].resize(index_.chunks[group].address.size());
+  }
 }
 
 void StoreReader::check_hash(std::size_t column, std::uint32_t cell,
@@ -202,10 +207,10 @@ PackedChunk<Number> StoreReader::chunk(std::size_t column, std::uint32_t cell,
   }
 }
 
-/// The packed values of a cell in the map, checked against their hash unless that was done. Notes
-/// that it was, but for a coordinate, since coordinates are touched by threes.
-template <typename Number>
-PackedChunk<Number> StoreReader::mapped(std::size_t column, std::uint32_t cell) const {
+/// The bytes of a chunk in the map, checked against their hash unless that was done. Notes that it
+/// was, but for a coordinate, since coordinates are touched by threes.
+std::span<const std::byte> StoreReader::checked_bytes(std::size_t column,
+                                                      std::uint32_t cell) const {
   const StoredChunk stored = index_.chunks.of(column, cell);
   const auto bytes = map_.bytes().subspan(stored.address, stored.bytes);
   const std::atomic_ref done(checked_[column < kSource ? 0 : column - kZ][cell]);
@@ -213,7 +218,17 @@ PackedChunk<Number> StoreReader::mapped(std::size_t column, std::uint32_t cell) 
     check_hash(column, cell, bytes);
     if (column >= kSource) done.store(1, std::memory_order_release);
   }
-  return chunk<Number>(column, cell, bytes);
+  return bytes;
+}
+
+template <typename Number>
+PackedChunk<Number> StoreReader::mapped(std::size_t column, std::uint32_t cell) const {
+  return chunk<Number>(column, cell, checked_bytes(column, cell));
+}
+
+BlockBoxes StoreReader::blocks(std::uint32_t cell) const {
+  return BlockBoxes(
+      checked_bytes(kBlocks, cell).first(std::size_t{blocks_per_cell()} * sizeof(BlockBox)));
 }
 
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::mapped_coordinates(std::uint32_t cell) const {
@@ -273,14 +288,14 @@ PackedChunk<std::uint32_t> StoreReader::origins(std::uint32_t cell) const {
 }
 
 std::uint64_t StoreReader::packed_bytes(std::uint32_t cell) const {
-  const std::uint32_t* bytes = index().bytes.data() + 4 * std::size_t{cell};
+  const std::uint32_t* bytes = index_.chunks[0].bytes.data() + 4 * std::size_t{cell};
   return std::uint64_t{bytes[0]} + bytes[1] + bytes[2];
 }
 
 std::array<PackedChunk<std::int32_t>, 3> StoreReader::read_packed(std::uint32_t cell,
                                                                   std::span<std::byte> to) const {
-  const std::uint64_t* address = index().address.data() + 4 * std::size_t{cell};
-  const std::uint32_t* bytes = index().bytes.data() + 4 * std::size_t{cell};
+  const std::uint64_t* address = index_.chunks[0].address.data() + 4 * std::size_t{cell};
+  const std::uint32_t* bytes = index_.chunks[0].bytes.data() + 4 * std::size_t{cell};
   const File& file = map_.file();
   const std::array<std::span<std::byte>, 3> parts{to.subspan(0, bytes[0]),
                                                   to.subspan(bytes[0], bytes[1]),
@@ -314,7 +329,7 @@ std::optional<std::array<PackedChunk<std::int32_t>, 3>> StoreReader::in_place(
 std::uint64_t StoreReader::fingerprint() const {
   Xxh64Stream hash;
   const auto add = [&hash](const auto& values) { hash.update(std::as_bytes(std::span(values))); };
-  add(index().xxh64);
+  add(index_.chunks[0].xxh64);
   for (const Cell& cell : cells()) add(std::span(&cell.count, 1));
   for (const Cell& cell : cells()) add(std::span(&cell.box, 1));
   const std::array<std::uint64_t, 4> numbers{metadata().point_count, metadata().input_points,
@@ -338,9 +353,9 @@ std::uint64_t StoreReader::fingerprint() const {
     add(metadata().near->path);
     add(line_text(as_header(*metadata().near)));
   }
-  if (has_classes()) add(index_.chunks[1].xxh64);
+  if (has_classes()) add(index_.chunks[2].xxh64);
   if (has_origins()) {
-    add(index_.chunks[2].xxh64);
+    add(index_.chunks[3].xxh64);
     add(metadata().origins->quanta);
   }
   return hash.digest();
@@ -385,8 +400,7 @@ double StoreReader::typical_block() const {
 
 std::uint64_t StoreReader::allocated_bytes() const {
   const auto bytes = [](const auto& values) { return values.capacity() * sizeof(values[0]); };
-  std::uint64_t sum =
-      bytes(index_.cells) + bytes(index_.top) + bytes(index_.blocks) + bytes(tree_) + bytes(read_);
+  std::uint64_t sum = bytes(index_.cells) + bytes(index_.top) + bytes(tree_) + bytes(read_);
   for (const ChunkIndex& index : index_.chunks) {
     sum += bytes(index.address) + bytes(index.bytes) + bytes(index.xxh64);
   }

@@ -22,7 +22,6 @@ struct StoreIndex {
   std::vector<Cell> cells;
   ChunkIndexes chunks;
   std::vector<TopNode> top;
-  std::vector<BlockBox> blocks;  ///< the same number of block boxes for every cell
 };
 
 /// A store opened for reading: its index in memory, its points in a read-only map of the file.
@@ -34,8 +33,8 @@ class StoreReader final : public PackedCloud {
 
   const StoreMetadata& metadata() const { return index_.metadata; }
   const std::string& name() const { return map_.name(); }
-  /// Where the chunks of x, y, z and source are: four entries a cell.
-  const ChunkIndex& index() const { return index_.chunks[0]; }
+  /// Where the chunks are.
+  const ChunkIndexes& chunks() const { return index_.chunks; }
   std::span<const TopNode> top_tree() const { return index_.top; }
 
   /// Hash of the cells' hashes and of everything else in the store but its points, so that two
@@ -63,7 +62,7 @@ class StoreReader final : public PackedCloud {
   const Quantisation& quantisation() const override { return metadata().quantisation; }
   std::span<const Cell> cells() const override { return index_.cells; }
   std::span<const TreeNode> tree() const override { return tree_; }
-  std::span<const BlockBox> blocks() const override { return index_.blocks; }
+  BlockBoxes blocks(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> coordinates(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> peek(std::uint32_t cell) const override;
   std::array<PackedChunk<std::int32_t>, 3> coordinates_of_block(std::uint32_t cell) const override;
@@ -110,6 +109,7 @@ class StoreReader final : public PackedCloud {
 
  private:
   void check_hash(std::size_t column, std::uint32_t cell, std::span<const std::byte> bytes) const;
+  std::span<const std::byte> checked_bytes(std::size_t column, std::uint32_t cell) const;
   template <typename Number>
   PackedChunk<Number> chunk(std::size_t column, std::uint32_t cell,
                             std::span<const std::byte> bytes) const;
@@ -124,8 +124,8 @@ class StoreReader final : public PackedCloud {
   mutable std::once_flag typical_block_found_;
   mutable double typical_block_ = 0;
   /// Per cell: 1 once the hashes in the map were found right, of x, y and z together, and of
-  /// source, class and origin; empty for columns that the store lacks.
-  mutable std::array<std::vector<std::uint8_t>, 4> checked_;
+  /// source, blocks, class and origin; empty for columns that the store lacks.
+  mutable std::array<std::vector<std::uint8_t>, 5> checked_;
   /// Per cell: 1 once read_packed() read its coordinates from the file.
   mutable std::vector<std::uint8_t> read_;
 

@@ -1,24 +1,17 @@
 #include "io/store/store_writer.hpp"
 
-#include <fcntl.h>
 #include <hdf5.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <cstdint>
+#include <cstring>
 #include <filesystem>
-#include <mutex>
-#include <optional>
 #include <stdexcept>
-#include <stop_token>
-#include <system_error>
-#include <thread>
-#include <utility>
 
 #include "clearway/error.hpp"
 #include "core/cloud/packed_cloud.hpp"
 #include "io/files/file.hpp"
+#include "io/files/fletcher32.hpp"
 #include "io/files/hdf5.hpp"
 #include "io/files/header_values.hpp"
 #include "io/files/parallel_loop.hpp"
@@ -28,101 +21,17 @@
 namespace clearway {
 namespace {
 
-/// Speeds up the writing of a large file that someone else writes front to back. Space is reserved
-/// ahead of the writer, which makes each write cheaper, and written bytes are sent to the disk
-/// early, so that the last sync is short. Failures here are ignored; the writer and the sync
-/// meet them.
-class GrowingFile {
- public:
-  explicit GrowingFile(const std::filesystem::path& path);
-  ~GrowingFile();
-  GrowingFile(const GrowingFile&) = delete;
-  GrowingFile& operator=(const GrowingFile&) = delete;
-
-  /// Reports that all bytes before `end` are written.
-  void written(std::uint64_t end);
-  /// Frees what was reserved after the end of the file, which is complete now.
-  void trim();
-
- private:
-  void reserve_ahead(std::uint64_t end);
-  void write_back(const std::stop_token& stop);
-
-  std::filesystem::path folder_;
-  File file_;
-  std::uint64_t reserved_ = 0;
-  bool may_reserve_ = true, may_write_back_ = true;
-  std::mutex mutex_;
-  std::condition_variable_any grown_;
-  std::uint64_t written_ = 0;  // guarded by mutex_
-  std::jthread writing_back_;  // starts with the first large piece; must be the last member
-};
-
-// Bytes that are reserved or written back at once.
-constexpr std::uint64_t kPiece = std::uint64_t{64} << 20;
-constexpr std::uint64_t kLeastFree = 16;  // pieces that must be free on the disk for reserving
-
-GrowingFile::GrowingFile(const std::filesystem::path& path)
-    : folder_(folder_of(path)), file_(File::open_for_writing(path)) {}
-
-GrowingFile::~GrowingFile() = default;
-
-void GrowingFile::written(std::uint64_t end) {
-  if (end < kPiece) return;
-  reserve_ahead(end);
-  {
-    const std::lock_guard lock(mutex_);
-    written_ = end;
-  }
-  if (may_write_back_ && !writing_back_.joinable()) {
-    try {
-      writing_back_ = std::jthread([this](const std::stop_token& stop) { write_back(stop); });
-    } catch (const std::system_error&) {
-      may_write_back_ = false;  // no thread is available, so the sync at the end does all of it
-    }
-  }
-  grown_.notify_one();
-}
-
-void GrowingFile::reserve_ahead(std::uint64_t end) {
-  while (may_reserve_ && reserved_ < end + kPiece / 2) {
-    reserved_ = std::max(reserved_, end);
-    may_reserve_ = free_disk_bytes(folder_) >= kLeastFree * kPiece &&
-                   ::fallocate(file_.descriptor(), FALLOC_FL_KEEP_SIZE,
-                               static_cast<off_t>(reserved_), static_cast<off_t>(kPiece)) == 0;
-    reserved_ += kPiece;
-  }
-}
-
-void GrowingFile::write_back(const std::stop_token& stop) {
-  std::uint64_t begun = 0;
-  std::unique_lock lock(mutex_);
-  while (grown_.wait(lock, stop, [&] { return written_ >= begun + kPiece; })) {
-    const std::uint64_t first = std::exchange(begun, written_);
-    lock.unlock();
-    ::sync_file_range(file_.descriptor(), static_cast<off_t>(first),
-                      static_cast<off_t>(begun - first), SYNC_FILE_RANGE_WRITE);
-    lock.lock();
-    if (stop.stop_requested()) return;
-  }
-}
-
-void GrowingFile::trim() {
-  if (reserved_ == 0) return;
-  // Truncating the file to its own size frees the blocks after it. Where this fails they stay
-  // reserved.
-  if (::ftruncate(file_.descriptor(), static_cast<off_t>(file_.size_bytes())) != 0) return;
-}
-
-/// Creates a dataset of points: [cells, cell_points], in chunks of [1, cell_points], packed by
-/// scale-offset.
-hdf5::Id create_packed(const hdf5::Id& file, const std::string& group, std::size_t column,
-                       std::uint64_t cells, std::uint32_t cell_points) {
+/// Creates a dataset with a row and a chunk for each cell: cell_points values, packed by
+/// scale-offset, or the numbers of its block boxes, which only have a checksum.
+hdf5::Id create_chunked(const hdf5::Id& file, const std::string& group, std::size_t column,
+                        std::uint64_t cells, std::uint32_t cell_points) {
   hdf5::require_group(file, group);
-  const std::array types{H5T_STD_I32LE, H5T_STD_I32LE, H5T_STD_I32LE,
-                         H5T_STD_U64LE, H5T_STD_U8LE,  H5T_STD_U32LE};
-  const std::array<hsize_t, 2> size{cells, cell_points};
-  const std::array<hsize_t, 2> chunk{1, cell_points};
+  const std::array types{H5T_STD_I32LE, H5T_STD_I32LE, H5T_STD_I32LE, H5T_STD_U64LE,
+                         H5T_STD_U16LE, H5T_STD_U8LE,  H5T_STD_U32LE};
+  const bool is_packed = column != kBlocks;
+  const hsize_t values = is_packed ? cell_points : 6 * divide_up(cell_points, kBlockPoints);
+  const std::array<hsize_t, 2> size{cells, values};
+  const std::array<hsize_t, 2> chunk{1, values};
   const hdf5::Id space(H5Screate_simple(2, size.data(), nullptr), H5Sclose, "HDF5 dataspace");
   const hdf5::Id list(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, "HDF5 property list");
   hdf5::check(H5Pset_obj_track_times(list.get(), false), "HDF5 object times");
@@ -130,8 +39,9 @@ hdf5::Id create_packed(const hdf5::Id& file, const std::string& group, std::size
     hdf5::check(H5Pset_chunk(list.get(), 2, chunk.data()), "HDF5 chunk size");
     hdf5::check(H5Pset_fill_value(list.get(), types[column], nullptr), "HDF5 undefined fill value");
     hdf5::check(H5Pset_fill_time(list.get(), H5D_FILL_TIME_NEVER), "HDF5 fill time");
-    hdf5::check(H5Pset_scaleoffset(list.get(), H5Z_SO_INT, H5Z_SO_INT_MINBITS_DEFAULT),
-                "HDF5 scale-offset");
+    hdf5::check(is_packed ? H5Pset_scaleoffset(list.get(), H5Z_SO_INT, H5Z_SO_INT_MINBITS_DEFAULT)
+                          : H5Pset_fletcher32(list.get()),
+                "HDF5 filter");
   }
   const std::string path = group + "/" + kPointColumnNames[column];
   return {H5Dcreate2(file.get(), path.c_str(), types[column], space.get(), H5P_DEFAULT, list.get(),
@@ -143,21 +53,16 @@ hdf5::Id create_packed(const hdf5::Id& file, const std::string& group, std::size
 
 struct StoreWriter::State {
   State(const std::filesystem::path& path_of_file, const StoreMetadata& facts, std::uint64_t cells)
-      : path(path_of_file),
-        metadata(facts),
-        promised_cells(cells),
-        file(path, kStoreKind),
-        blocks(File::create_temporary(folder_of(path))) {
+      : path(path_of_file), metadata(facts), promised_cells(cells), file(path, kStoreKind) {
     hdf5::naming(path.string(), [&] {
-      growth.emplace(path);
       count.reserve(cells);
       box.reserve(cells);
       for (std::size_t group = 0; group < kChunkGroups.size(); ++group) {
         const auto& [name, first, columns] = kChunkGroups[group];
         if (!has(first)) continue;
         for (std::size_t column = first; column < first + columns; ++column) {
-          datasets[column] = create_packed(file.file(), group == 0 ? "points" : name, column, cells,
-                                           facts.cell_points);
+          datasets[column] = create_chunked(file.file(), group == 0 ? "points" : name, column,
+                                            cells, facts.cell_points);
         }
         chunks[group].address.reserve(columns * cells);
         chunks[group].bytes.reserve(columns * cells);
@@ -186,7 +91,7 @@ struct StoreWriter::State {
       hdf5::check(H5Dget_chunk_info_by_coord(dataset.get(), at.data(), &mask, &address, &size),
                   "HDF5 address of a chunk");
     }
-    growth->written(address + bytes.size());
+    file.written();
     return address;
   }
 
@@ -203,22 +108,6 @@ struct StoreWriter::State {
     }
     count.push_back(packed.cell.count);
     box.push_back(packed.cell.box);
-    std::vector<BlockBox> rows = packed.blocks;
-    rows.resize(blocks_per_cell());
-    blocks.write(std::as_bytes(std::span(rows)));
-  }
-
-  std::uint64_t blocks_per_cell() const { return divide_up(metadata.cell_points, kBlockPoints); }
-
-  void write_blocks() {
-    const std::uint64_t rows = promised_cells * blocks_per_cell();
-    TableWriter& table = file.add_table("blocks", {table_column<BlockBox>("box")}, rows);
-    std::vector<BlockBox> piece;
-    for (std::uint64_t row = 0; row < rows; row += piece.size()) {
-      piece.resize(std::min<std::uint64_t>(kPieceRows, rows - row));
-      blocks.read_at(row * sizeof(BlockBox), std::as_writable_bytes(std::span(piece)));
-      table.append_values(piece);
-    }
   }
 
   void write_index(const std::vector<TopNode>& tree) {
@@ -231,7 +120,6 @@ struct StoreWriter::State {
                     table_column<std::array<std::uint64_t, 4>>("xxh64")},
                    promised_cells)
         .append_values(count, box, address, bytes, xxh64);
-    write_blocks();
     file.add_column("tree", "nodes", tree);
     for (std::size_t group = 1; group < kChunkGroups.size(); ++group) {
       if (!has(kChunkGroups[group].first)) continue;
@@ -256,8 +144,6 @@ struct StoreWriter::State {
     file.note("scale", std::span(metadata.quantisation.scale));
     file.note("offset", std::span(metadata.quantisation.offset));
     file.finish(as_header(metadata));
-    growth->trim();
-    growth.reset();
   }
 
   void confirm_address(const File& reread, std::size_t column, std::size_t cell) const {
@@ -279,11 +165,15 @@ struct StoreWriter::State {
   std::vector<std::uint32_t> count;  ///< of each cell
   std::vector<QuantumBox> box;
   ChunkIndexes chunks;
-  File blocks;  ///< spools the rows of /blocks/box, which are too many to keep in memory
-  std::optional<GrowingFile> growth;
 };
 
-void hash_chunks(PackedCell& packed) {
+void seal_cell(PackedCell& packed, std::span<const BlockBox> blocks, std::uint32_t cell_points) {
+  std::vector<std::byte>& boxes = packed.chunks[kBlocks];
+  boxes.resize(block_chunk_bytes(cell_points));
+  std::memcpy(boxes.data(), blocks.data(), blocks.size_bytes());
+  const std::span values(boxes.data(), boxes.size() - sizeof(std::uint32_t));
+  const std::uint32_t checksum = fletcher32(values);
+  std::memcpy(boxes.data() + values.size(), &checksum, sizeof checksum);
   for (std::size_t i = 0; i < kPointColumns; ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
 }
 

@@ -15,15 +15,14 @@ namespace clearway {
 /// One packed cell, which the writer puts into the file as it is.
 struct PackedCell {
   Cell cell;
-  std::vector<BlockBox> blocks;  ///< one for each block that has points
   /// Packed values of each column, cell_points of them; empty where the store lacks the column
   std::array<std::vector<std::byte>, kPointColumns> chunks;
-  std::array<std::uint64_t, kPointColumns> xxh64{};  ///< hashes of the chunks, see hash_chunks()
+  std::array<std::uint64_t, kPointColumns> xxh64{};  ///< hashes of the chunks, see seal_cell()
 };
 
-/// Fills in the hashes of the chunks. Called by the threads that pack, because the writer has only
-/// one.
-void hash_chunks(PackedCell& packed);
+/// Packs the boxes of the blocks of a cell that have points, and fills in the hashes of all chunks.
+/// Called by the threads that pack, because the writer has only one.
+void seal_cell(PackedCell& packed, std::span<const BlockBox> blocks, std::uint32_t cell_points);
 
 /// Writes a store front to back. All calls come from one thread. The caller owns the file's name
 /// and publishes it after finish().

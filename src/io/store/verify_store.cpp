@@ -85,7 +85,7 @@ class Verification {
   void check_boxes(std::uint32_t cell) const {
     const Cell& known = store_.cells()[cell];
     if (!(box_of(0, known.count) == known.box)) fail(cell, "its box is not that of its points");
-    const BlockBox* blocks = store_.blocks().data() + std::size_t{cell} * store_.blocks_per_cell();
+    const BlockBoxes blocks = store_.blocks(cell);
     for (std::uint32_t first = 0; first < known.count; first += kBlockPoints) {
       const std::uint32_t end = std::min(known.count, first + kBlockPoints);
       if (!(blocks[first / kBlockPoints] == encode_block_box(known.box, box_of(first, end)))) {

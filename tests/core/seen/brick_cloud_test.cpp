@@ -46,8 +46,8 @@ TEST_CASE("the middles of cubes are those of the definition, bit for bit") {
       REQUIRE(middle == middle_by_definition(cube));
       for (std::size_t k = 0; k < 3; ++k) {
         REQUIRE(read[k][entry] == chunks[k][entry]);
-        const QuantumBox block = decode_block_box(cloud.cells()[cell].box,
-                                                  cloud.blocks()[cell * kBrickWords + entry / 64]);
+        const QuantumBox block =
+            decode_block_box(cloud.cells()[cell].box, cloud.blocks(cell)[entry / 64]);
         REQUIRE((block.lo[k] <= chunks[k][entry] && chunks[k][entry] <= block.hi[k]));
       }
     }

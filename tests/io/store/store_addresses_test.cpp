@@ -8,14 +8,14 @@ using namespace clearway;
 namespace {
 
 PackedCell one_point() {
-  PackedCell packed{.cell = {1, {{7, 8, 9}, {7, 8, 9}}}, .blocks = {}, .chunks = {}};
-  packed.blocks.push_back(encode_block_box(packed.cell.box, packed.cell.box));
+  PackedCell packed{.cell = {1, {{7, 8, 9}, {7, 8, 9}}}, .chunks = {}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::vector<std::int32_t> values(64, static_cast<std::int32_t>(7 + axis));
     append_packed_chunk<std::int32_t>(values, packed.chunks[axis]);
   }
   append_packed_chunk<std::uint64_t>(std::vector<std::uint64_t>(64, 0), packed.chunks[3]);
-  hash_chunks(packed);
+  const BlockBox block = encode_block_box(packed.cell.box, packed.cell.box);
+  seal_cell(packed, std::span(&block, 1), 64);
   return packed;
 }
 

@@ -44,7 +44,7 @@ std::string refusal_of_store(const std::filesystem::path& path) {
 TEST_CASE("a damaged chunk is named when its cell is read") {
   const ReadStore small(300);
   std::string bytes = bytes_of(small.options.output);
-  bytes[StoreReader(small.options.output).index().address[4 * 2 + 1] + 30] ^= 4;
+  bytes[StoreReader(small.options.output).chunks().of(kY, 2).address + 30] ^= 4;
   put_bytes(small.options.output, bytes);
   const StoreReader store(small.options.output);
   CHECK_NOTHROW(store.coordinates(1));
@@ -124,7 +124,7 @@ TEST_CASE("a store counts the cells that were touched, and every byte that it ha
   CHECK(store.bytes_read().coordinates == 2 * store.packed_bytes(3) + store.packed_bytes(0) +
                                               store.packed_bytes(1) + 3 * sizeof(std::int32_t));
   check_equal(store.bytes_read().sources, 0);
-  const auto& bytes = store.index().bytes;
+  const auto& bytes = store.chunks()[0].bytes;
   store.sources(3);
   store.sources(3);
   store.source_of(0, 7);

@@ -247,7 +247,8 @@ TEST_CASE("a damaged store is named by verify, by a run and by a conversion that
   work.put("path.txt", pose_at(0));
   work.succeed("convert scan.xyz -o site.h5");
   const std::string sound = work.bytes("site.h5");
-  const std::vector<std::uint64_t> chunks = StoreReader(work.folder / "site.h5").index().address;
+  const std::vector<std::uint64_t> chunks =
+      StoreReader(work.folder / "site.h5").chunks()[0].address;
   REQUIRE(chunks.size() == 4);  // x, y, z and the source indices of one cell
   for (const std::uint64_t chunk : chunks) {
     std::string damaged = sound;

@@ -134,7 +134,7 @@ class Share {
             {"model_points", query.model.vertices.size()},
             {"cells", store.cells().size()},
             {"cells_read", store.cells_touched()},
-            {"blocks", store.blocks().size()},
+            {"blocks", store.cells().size() * store.blocks_per_cell()},
             {"bytes", std::filesystem::file_size(asked_.environment)},
             {"bytes_read", store.bytes_read().coordinates},
             {"box_tests", tests.node_tests},

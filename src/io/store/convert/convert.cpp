@@ -122,7 +122,7 @@ constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;  // memory of batches, index and libraries
 // Memory per thread: a counting grid and its refinement.
 constexpr std::uint64_t kThreadBytes = 32 * kMiB;
-constexpr std::uint64_t kCellBytes = 160;           // index and tree nodes of a cell
+constexpr std::uint64_t kCellBytes = 180;           // index and tree nodes of a cell
 constexpr std::uint64_t kColumnCellBytes = 20;      // index of classes or origins, of a cell
 constexpr std::uint64_t kOutputBytesPerPoint = 11;  // an estimate for the disk check
 constexpr std::uint64_t kPaddingBytesPerPoint = 4;  // an estimate for the disk check

@@ -55,7 +55,8 @@ QuantumBox box_of(std::span<const BucketPoint> points) {
   return {{bounds.lo[0], bounds.lo[1], bounds.lo[2]}, {bounds.hi[0], bounds.hi[1], bounds.hi[2]}};
 }
 
-void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
+/// Finds the box of a cell and those of its blocks.
+std::vector<BlockBox> find_boxes(std::span<const BucketPoint> points, Cell& cell) {
   std::vector<QuantumBox> boxes;
   boxes.reserve(divide_up(points.size(), kBlockPoints));
   for (std::size_t first = 0; first < points.size(); first += kBlockPoints) {
@@ -64,8 +65,11 @@ void append_boxes(std::span<const BucketPoint> points, PackedCell& cell) {
   }
   QuantumBox all = boxes.front();
   for (const QuantumBox& box : boxes) all = all.united(box);
-  cell.cell = {static_cast<std::uint32_t>(points.size()), all};
-  for (const QuantumBox& box : boxes) cell.blocks.push_back(encode_block_box(all, box));
+  cell = {static_cast<std::uint32_t>(points.size()), all};
+  std::vector<BlockBox> blocks;
+  blocks.reserve(boxes.size());
+  for (const QuantumBox& box : boxes) blocks.push_back(encode_block_box(all, box));
+  return blocks;
 }
 
 /// Packs a value of each point as the store keeps them. The padding repeats the value of the last
@@ -82,7 +86,7 @@ void pack_values(std::span<const BucketPoint> points, std::uint32_t cell_points,
 PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
                      std::uint32_t cell_points, bool has_classes) {
   PackedCell cell;
-  append_boxes(points, cell);
+  const std::vector<BlockBox> blocks = find_boxes(points, cell.cell);
   const auto pack = [&](auto value_of, std::vector<std::byte>& out) {
     pack_values(points, cell_points, value_of, out);
   };
@@ -96,7 +100,7 @@ PackedCell pack_cell(const Unit& unit, std::span<const BucketPoint> points,
   if (unit.has_origins()) {
     pack([&](const BucketPoint& p) { return unit.origin(p); }, cell.chunks[kOrigin]);
   }
-  hash_chunks(cell);
+  seal_cell(cell, blocks, cell_points);
   return cell;
 }
 

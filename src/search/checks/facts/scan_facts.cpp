@@ -42,18 +42,12 @@ Box ScanProximity::cell_box(std::uint32_t cell) const {
   return position_box(cloud_.quantisation(), cloud_.cells()[cell].box);
 }
 
-Box ScanProximity::block_box(std::uint32_t cell, std::uint32_t block) const {
-  const std::uint64_t at = std::uint64_t{cell} * cloud_.blocks_per_cell() + block;
-  return position_box(cloud_.quantisation(),
-                      decode_block_box(cloud_.cells()[cell].box, cloud_.blocks()[at]));
-}
-
 void ScanProximity::look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const {
   const StepRange range(cell_box(cell), box, best.distance);
-  const std::uint64_t first = std::uint64_t{cell} * cloud_.blocks_per_cell();
+  const BlockBoxes blocks = cloud_.blocks(cell);
   for (std::uint32_t block = 0; block < blocks_of(cloud_.cells()[cell]); ++block) {
-    if (!range.meets(cloud_.blocks()[first + block])) continue;
-    const Box place = block_box(cell, block);
+    if (!range.meets(blocks[block])) continue;
+    const Box place = cloud_.block_box(cell, block);
     const double distance = place.distance(box);
     if (distance > best.distance || (best.found && distance == best.distance)) continue;
     if (2 * half_diagonal(place) > longest_block_) continue;

@@ -45,7 +45,6 @@ class ScanProximity {
 
  private:
   Box cell_box(std::uint32_t cell) const;
-  Box block_box(std::uint32_t cell, std::uint32_t block) const;
   void look_into(std::uint32_t cell, const Box& box, bool any, Nearest& best) const;
   Nearest descend(const Box& box, double most, bool any) const;
 

@@ -73,9 +73,7 @@ void write_line(const std::filesystem::path& path, std::uint32_t points,
   metadata.quantisation = {{1, 1, 1}, {0, 0, 0}};
   metadata.layout = "adaptive";
   PackedCell packed{.cell = {points, {{0, 0, 0}, {static_cast<std::int32_t>(points) - 1, 0, 0}}},
-                    .blocks = {},
                     .chunks = {}};
-  packed.blocks.push_back(encode_block_box(packed.cell.box, packed.cell.box));
   std::vector<std::int32_t> along, zero(64);
   std::vector<std::uint64_t> sources;
   for (std::uint32_t i = 0; i < 64; ++i) {
@@ -86,7 +84,8 @@ void write_line(const std::filesystem::path& path, std::uint32_t points,
     append_packed_chunk<std::int32_t>(k == 0 ? along : zero, packed.chunks[k]);
   }
   append_packed_chunk<std::uint64_t>(sources, packed.chunks[3]);
-  hash_chunks(packed);
+  const BlockBox block = encode_block_box(packed.cell.box, packed.cell.box);
+  seal_cell(packed, std::span(&block, 1), 64);
   StoreWriter writer(path, metadata, 1);
   writer.append(packed);
   writer.finish({{0, 1, 0}});
