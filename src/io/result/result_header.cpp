@@ -16,6 +16,7 @@
 #include "core/util/format.hpp"
 #include "io/files/header_values.hpp"
 #include "io/files/input_error.hpp"
+#include "io/files/table_file.hpp"
 #include "io/files/xxh64.hpp"
 
 namespace clearway {
