@@ -66,9 +66,8 @@ std::uint64_t all_differences(const Comparison& c) {
 }
 
 nlohmann::ordered_json point_json(const PointDifference& point) {
-  nlohmann::ordered_json out{{"kind", kind_text(point.kind)},
-                             {"source", point.source},
-                             {"xyz", {point.xyz.x, point.xyz.y, point.xyz.z}}};
+  nlohmann::ordered_json out{
+      {"kind", kind_text(point.kind)}, {"source", point.source}, {"xyz", point.xyz}};
   if (point.first_pose_a) out["first_pose_a"] = *point.first_pose_a;
   if (point.first_pose_b) out["first_pose_b"] = *point.first_pose_b;
   if (point.last_pose_a) out["last_pose_a"] = *point.last_pose_a;
@@ -171,28 +170,23 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
 }
 
 struct CompareOptions {
-  std::filesystem::path a, b;
-  std::uint64_t show = 10;
-  bool json = false;
   bool conflicts = false;
-  ConflictComparison places;
+  ConflictComparison of;  ///< the results, and what else is compared of their conflicts
 };
 
 /// Returns the exit code.
 int run_compare(CompareOptions& options) {
   if (options.conflicts) {
     int code = kDone;
-    run_stoppable(options.b, kStartsAgain, [&] {
-      code = compare_conflicts(options.places, options.a, options.b, options.show, options.json);
-    });
+    run_stoppable(options.of.b.result, kStartsAgain, [&] { code = compare_conflicts(options.of); });
     return code;
   }
-  const ResultReader a(options.a), b(options.b);
+  const ResultReader a(options.of.result), b(options.of.b.result);
   repeat_warnings(a, a.name() + ": ");
   repeat_warnings(b, b.name() + ": ");
-  const Comparison comparison = compare_results(a, b, options.show);
-  print(options.json ? comparison_json(comparison, a.name(), b.name())
-                     : comparison_text(comparison, a.name(), b.name()));
+  const Comparison comparison = compare_results(a, b, options.of.show);
+  print(options.of.json ? comparison_json(comparison, a.name(), b.name())
+                        : comparison_text(comparison, a.name(), b.name()));
   return comparison.equal() ? kDone : kDiffers;
 }
 
@@ -200,19 +194,19 @@ int run_compare(CompareOptions& options) {
 
 void add_compare(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<CompareOptions>();
+  options->of.show = 10;
   CLI::App* command =
       program.add_subcommand("compare", "Say how the colliding points of two results differ");
-  command->add_option("A", options->a, "Result of clearway run")->type_name("FILE")->required();
-  command->add_option("B", options->b, "Another result about the same environment")
-      ->type_name("FILE")
+  add_file(*command, "A", options->of.result, "Result of clearway run")->required();
+  add_file(*command, "B", options->of.b.result, "Another result about the same environment")
       ->required();
-  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
+  add_count_option(*command, "--show", options->of.show, 0, 1'000'000'000,
                    "Print the first N differing points, or new and gone conflicts");
-  command->add_flag("--json", options->json, "Print one JSON object");
+  command->add_flag("--json", options->of.json, "Print one JSON object");
   CLI::Option* conflicts = command->add_flag(
       "--conflicts", options->conflicts,
       "Say instead which conflicts are new, worse, gone and the same; of any environments");
-  add_conflict_comparison(*command, options->places, conflicts);
+  add_conflict_comparison(*command, options->of, conflicts);
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
@@ -232,12 +226,12 @@ void add_compare(CLI::App& program, int& exit_code) {
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, command, &exit_code] {
-    const ConflictComparison& places = options->places;
-    const bool one_path = places.trajectory_b.empty();
-    advising_to_run_again(*command,
-                          {{options->a, places.trajectory},
-                           {options->b, one_path ? places.trajectory : places.trajectory_b}},
-                          [&] { exit_code = run_compare(*options); });
+    const ConflictComparison& of = options->of;
+    advising_to_run_again(
+        *command,
+        {{of.result, of.trajectory},
+         {of.b.result, of.b.trajectory.empty() ? of.trajectory : of.b.trajectory}},
+        [&] { exit_code = run_compare(*options); });
   });
 }
 

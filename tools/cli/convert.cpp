@@ -40,8 +40,7 @@ std::optional<double> regular_size_of(const std::string& layout) {
 
 nlohmann::ordered_json box_json(const StoreReader& store) {
   if (store.tree().empty()) return nullptr;
-  const Box box = position_box(store.quantisation(), store.tree()[0].box);
-  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
+  return Json(position_box(store.quantisation(), store.tree()[0].box));
 }
 
 /// The bytes that this process read and wrote by system calls, page cache included, as the system
@@ -183,9 +182,7 @@ void add_options(CLI::App& command, ConvertCommand& options) {
           "Scans (LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK, text), folders of scans, or - for LAS "
           "or LAZ on standard input")
       ->required();
-  command.add_option("-o,--output", options.output, "The store, an HDF5 file")
-      ->type_name("FILE")
-      ->required();
+  add_file(command, "-o,--output", options.output, "The store, an HDF5 file")->required();
   add_fields(command, kConvertFields, conversion, options.lengths);
   command
       .add_option("--layout", options.layout,

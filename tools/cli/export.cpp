@@ -148,13 +148,9 @@ void add_export(CLI::App& program) {
   auto options = std::make_shared<ExportOptions>();
   CLI::App* command = program.add_subcommand(
       "export", "Write the colliding points of a result as LAS, PLY, XYZ or CSV");
-  command->add_option("RESULT", options->result, "Result of clearway run")
-      ->type_name("FILE")
-      ->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "Output; the ending of its name chooses the format")
-      ->type_name("FILE")
+  add_file(*command, "RESULT", options->result, "Result of clearway run")->required();
+  add_file(*command, "-o,--output", options->output,
+           "Output; the ending of its name chooses the format")
       ->required();
   command
       ->add_option(
@@ -167,10 +163,8 @@ void add_export(CLI::App& program) {
       ->add_option("--scans", options->scans,
                    "Copy the points' own records out of these scans, as convert got them; LAS only")
       ->type_name("PATH...");
-  command
-      ->add_option("--trajectory", options->trajectory,
-                   "The trajectory of the run: adds its labels, such as times, to a profile")
-      ->type_name("FILE");
+  add_file(*command, "--trajectory", options->trajectory,
+           "The trajectory of the run: adds its labels, such as times, to a profile");
   add_chainage_option(*command, options->lengths, options->chainage_start);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
   command->add_flag("--force", options->force, "Overwrite an existing output");

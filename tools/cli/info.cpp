@@ -12,6 +12,7 @@
 #include "cli/model.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/ignored_options.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
 #include "core/geometry/point_box.hpp"
@@ -37,13 +38,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json box_json(const Box& box) {
-  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
-}
-
 ordered_json bounds_of(const StoreReader& store) {
   if (store.tree().empty()) return nullptr;
-  return box_json(position_box(store.quantisation(), store.tree()[0].box));
+  return Json(position_box(store.quantisation(), store.tree()[0].box));
 }
 
 /// The classes that points have, with their ASPRS names; null where the points have no classes.
@@ -108,7 +105,7 @@ ordered_json describe(const SectionData& section) {
                            {"blocked", section.cells().size()},
                            {"bins", section.bins.size()},
                            {"rounding", section.rounding},
-                           {"motion", nullptr},
+                           {"motion", or_null(section.motion)},
                            {"environment_points", section.environment_points},
                            {"ignored_points", section.ignored_points},
                            {"poses", section.poses},
@@ -118,7 +115,6 @@ ordered_json describe(const SectionData& section) {
                            {"trajectory_hash", hash_text(section.trajectory_hash)},
                            {"warnings", section.warnings}};
   if (asked.pivots) description["pivots"] = {asked.pivots->front, asked.pivots->rear};
-  if (section.motion) description["motion"] = *section.motion;
   if (section.ignored_cells) {
     description["ignored_cells"] = {{"blocked", section.ignored_cells->blocked},
                                     {"high", section.ignored_cells->high}};
@@ -133,30 +129,30 @@ ordered_json describe(const SectionData& section) {
 /// What a result was asked, and of which inputs.
 ordered_json question_json(const ResultReader& result) {
   const ResultHeader& h = result.header();
-  ordered_json description{{"kind", "result"},
-                           {"version", kResultVersion},
-                           {"colliding_points", result.collisions()},
-                           {"environment_points", h.environment_points},
-                           {"radius", h.radius},
-                           {"model_as", model_as(h.model_solids, h.model_triangles)},
-                           {"model_points", h.model_points},
-                           {"model_triangles", h.model_triangles},
-                           {"model_solids", h.model_solids},
-                           {"model_spacing", nullptr},
-                           {"model_box", box_json(h.model_box)},
-                           {"poses", h.poses},
-                           {"first_pose", h.first_pose},
-                           {"clearance", h.clearance},
-                           {"clearance_points", result.clearances()},
-                           {"profile", h.profile},
-                           {"between_poses", h.between_poses},
-                           {"depth", h.depth},
-                           {"scale", h.quantisation.scale},
-                           {"offset", h.quantisation.offset},
-                           {"crs_wkt", h.crs_wkt}};
+  ordered_json description{
+      {"kind", "result"},
+      {"version", kResultVersion},
+      {"colliding_points", result.collisions()},
+      {"environment_points", h.environment_points},
+      {"radius", h.radius},
+      {"model_as", model_as(h.model_solids, h.model_triangles)},
+      {"model_points", h.model_points},
+      {"model_triangles", h.model_triangles},
+      {"model_solids", h.model_solids},
+      {"model_spacing", h.notes.model_spacing > 0 ? Json(h.notes.model_spacing) : Json()},
+      {"model_box", h.model_box},
+      {"poses", h.poses},
+      {"first_pose", h.first_pose},
+      {"clearance", h.clearance},
+      {"clearance_points", result.clearances()},
+      {"profile", h.profile},
+      {"between_poses", h.between_poses},
+      {"depth", h.depth},
+      {"scale", h.quantisation.scale},
+      {"offset", h.quantisation.offset},
+      {"crs_wkt", h.crs_wkt}};
   description["parameters"] = campaign::parameters_json(h);
   add_hashes(description, h);
-  if (h.notes.model_spacing > 0) description["model_spacing"] = h.notes.model_spacing;
   if (const ModelAxes axes = h.notes.model_axes; axes.need_turn()) {
     description["model_axes"] = {{"forward", name_of(axes.forward)}, {"up", name_of(axes.up)}};
   }
@@ -238,17 +234,16 @@ ordered_json describe_points(const std::filesystem::path& file) {
                            {"faces", points.info.faces},
                            {"scale", nullptr},
                            {"offset", nullptr},
-                           {"bounds", points.points > 0 ? box_json(points.box) : nullptr},
+                           {"bounds", points.points > 0 ? Json(points.box) : Json()},
                            {"length_unit", to_string(points.info.unit)},
                            {"crs_wkt", points.info.crs_wkt},
-                           {"spacing", nullptr},
+                           {"spacing", or_null(points.spacing)},
                            {"remarks", remarks}};
   if (points.info.quantisation) {
     description["scale"] = points.info.quantisation->scale;
     description["offset"] = points.info.quantisation->offset;
   }
   if (points.info.height_unit != 0) description["height_unit"] = points.info.height_unit;
-  if (points.spacing) description["spacing"] = *points.spacing;
   if (points.flags) {
     description["flags"] = {{"synthetic", points.flags->synthetic},
                             {"key_point", points.flags->key_point},
@@ -260,18 +255,11 @@ ordered_json describe_points(const std::filesystem::path& file) {
 
 ordered_json describe_trajectory(const std::filesystem::path& file) {
   const std::vector<Pose> poses = read_trajectory(file);
-  ordered_json bounds = nullptr;
-  if (!poses.empty()) {
-    std::vector<Vec3> positions;
-    positions.reserve(poses.size());
-    for (const Pose& pose : poses) {
-      positions.push_back(pose.position());
-    }
-    bounds = box_json(box_of(positions));
-  }
+  std::vector<Vec3> positions;
+  for (const Pose& pose : poses) positions.push_back(pose.position());
   return {{"kind", "trajectory"},
           {"poses", poses.size()},
-          {"bounds", bounds},
+          {"bounds", poses.empty() ? Json() : Json(box_of(positions))},
           {"more", "clearway trajectory info " + file.filename().string()}};
 }
 
@@ -406,9 +394,7 @@ void add_info(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "info",
       "Print what is in a file: store, result, section, journal, scan, model or trajectory");
-  command->add_option("FILE", options->file, "Any file that Clearway reads or writes")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "FILE", options->file, "Any file that Clearway reads or writes")->required();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Lengths are in the file's unit, normally metres. Scans and models are read to their end.\n"

@@ -83,9 +83,7 @@ void add_merge(CLI::App& program, int& exit_code) {
   command->add_option("PART", options->parts, "All parts of one run, in any order")
       ->type_name("FILE...")
       ->required();
-  command->add_option("-o,--output", options->output, "The result, an HDF5 file")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "-o,--output", options->output, "The result, an HDF5 file")->required();
   add_threads_option(*command, options->merge.threads);
   add_memory_option(*command, options->merge.memory_bytes);
   CLI::Option* force =

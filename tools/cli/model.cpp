@@ -42,10 +42,6 @@ struct ModelCommand {
   bool json = false;
 };
 
-ordered_json json_of(const Box& box) {
-  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
-}
-
 ordered_json describe_mesh(const ModelInput& input) {
   const MeshFacts facts = facts_of(input.mesh);
   const std::uint64_t drawn = input.remarks.segments + input.remarks.single_points;
@@ -73,8 +69,8 @@ ordered_json describe(const ModelInput& input) {
   const Box box = box_of(input.mesh.vertices);
   ordered_json out{{"kind", input.is_mesh() ? "mesh" : "points"},
                    {"vertices", input.mesh.vertices.size()},
-                   {"bounds", json_of(box)},
-                   {"size", {box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z}}};
+                   {"bounds", box},
+                   {"size", box.size()}};
   out.update(input.is_mesh() ? describe_mesh(input) : describe_points(input.mesh.vertices));
   return out;
 }
@@ -161,8 +157,7 @@ void write_solid(const MadeModel& options, const Model& solid) {
 }
 
 void add_output(CLI::App& command, MadeModel& options) {
-  command.add_option("-o,--output", options.output, "The solid in metres: a mesh in OFF or PLY")
-      ->type_name("FILE")
+  add_file(command, "-o,--output", options.output, "The solid in metres: a mesh in OFF or PLY")
       ->required();
   command.add_flag("--force", options.force, "Overwrite an existing output");
 }
@@ -190,11 +185,9 @@ void add_outline(CLI::App& model) {
   const auto options = std::make_shared<MadeModel>();
   CLI::App* command = model.add_subcommand(
       "outline", "Make a solid from its cross-section, such as a clearance gauge or a load");
-  command
-      ->add_option("IN", options->outline,
-                   "The outline as text: y,z of each corner in a line, or with --mirror "
-                   "height,half_width")
-      ->type_name("FILE")
+  add_file(*command, "IN", options->outline,
+           "The outline as text: y,z of each corner in a line, or with --mirror "
+           "height,half_width")
       ->required();
   options->lengths
       .add(*command, "--x", options->x, "Where the solid begins and ends along the vehicle")
@@ -247,10 +240,8 @@ void run_model(const ModelCommand& options) {
 
 /// Adds the file of a model, and how it is read.
 void add_reading(CLI::App& command, ModelCommand& options) {
-  command
-      .add_option("IN", options.input,
-                  "A mesh in STL, OBJ, PLY or OFF, points in a scan's format, or box:L,W,H")
-      ->type_name("FILE");
+  add_file(command, "IN", options.input,
+           "A mesh in STL, OBJ, PLY or OFF, points in a scan's format, or box:L,W,H");
   add_unit_alone(command, "--unit,--model-unit", options.how.unit);
   add_turn_options(command, options.how.forward, options.how.up);
   command.add_flag("--json", options.json, "Print one JSON object");
@@ -279,10 +270,8 @@ void add_model(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "model", "Say what is in a model's file, sample a mesh to points, make a box or a gauge");
   add_reading(*command, *options);
-  command
-      ->add_option("-o,--output", options->output,
-                   "The model's points, a PLY file, in metres where the unit of IN is known")
-      ->type_name("FILE");
+  add_file(*command, "-o,--output", options->output,
+           "The model's points, a PLY file, in metres where the unit of IN is known");
   CLI::Option* spacing = options->lengths.add(
       *command, "--spacing,--model-spacing", options->how.spacing,
       "Spacing of the points on a mesh: no place of its surface is farther than this from "

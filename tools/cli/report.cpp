@@ -60,38 +60,31 @@ void name_files(ReportCommand& options) {
   if (options.report.date.empty()) options.report.date = now_in_utc();
 }
 
-void read_model_again(ReportCommand& options, const Result& result, Query& query) {
+/// Reads again what was searched. The page shows the warnings of reading.
+Query read_query_again(ReportCommand& options, OpenedResult& opened, const Store& store) {
+  opened.read(&store);
+  const std::span<const Message> read(opened.messages);
+  const bool all_named =
+      options.vehicle.empty() && options.lengths.all_have_units() &&
+      names_unit(options.trajectory_options.metres_per_unit, read.first(opened.messages_of_path)) &&
+      names_unit(options.model_options.unit, read.subspan(opened.messages_of_path));
   std::vector<Message>& warnings = options.report.warnings;
-  if (options.vehicle.empty()) {
-    query.model =
-        read_model(options.model, model_options_of(result, options.model_options), &warnings);
-    return;
+  std::ranges::copy_if(opened.messages, std::back_inserter(warnings), [](const Message& message) {
+    return message.severity != Message::Severity::kNote;
+  });
+  if (auto note = all_named ? note_on_feet(store) : std::nullopt) {
+    warnings.push_back(std::move(*note));
   }
-  query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,
-                                result, warnings);
+  Query query({}, {}, opened.result.parameters());
+  query.poses = std::move(opened.poses);
+  query.model = std::move(opened.model);
+  query.bodies = std::move(opened.bodies);
+  options.report.labels = opened.labels;
   options.report.bodies = query.bodies;
+  if (options.vehicle.empty()) return query;
   for (const BodyEntry& body :
        read_vehicle_file(options.vehicle, options.model_options.environment_unit)) {
     options.report.mounts.push_back(body.mount);
-  }
-}
-
-Query read_query_again(ReportCommand& options, const Result& result, const Store& store) {
-  std::vector<Message>& warnings = options.report.warnings;
-  options.trajectory_options.default_crs = store.crs_wkt();
-  Query query({}, {}, result.parameters());
-  query.poses = read_trajectory(options.trajectory, options.trajectory_options, &warnings,
-                                &options.report.labels);
-  const std::size_t of_path = warnings.size();
-  read_model_again(options, result, query);
-  const std::span<const Message> read(warnings);
-  const bool all_named =
-      options.vehicle.empty() && options.lengths.all_have_units() &&
-      names_unit(options.trajectory_options.metres_per_unit, read.first(of_path)) &&
-      names_unit(options.model_options.unit, read.subspan(of_path));
-  std::erase_if(warnings, [](const Message& m) { return m.severity == Message::Severity::kNote; });
-  if (auto note = all_named ? note_on_feet(store) : std::nullopt) {
-    warnings.push_back(std::move(*note));
   }
   return query;
 }
@@ -105,9 +98,7 @@ const FoundConflicts& compare_with_ledger(ReportCommand& options, const Result& 
   if (day_of(options.report.date)) options.ledger.options.date = options.report.date;
   here.question = result.reader().header();
   here.options = options.find;
-  here.options.bodies = query.bodies;
-  here.options.station = options.report.labels.station;
-  if (query.bodies.empty()) here.options.model = &query.model;
+  here.options.model = query.bodies.empty() ? &query.model : nullptr;
   std::vector<std::uint32_t> conflict_of_near;
   here.conflicts =
       find_conflicts(result, query.poses, here.options, &here.conflict_of, &conflict_of_near);
@@ -161,30 +152,21 @@ void check_one_page(const ReportCommand& options) {
 
 void check_model_or_vehicle(const ReportCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
-  std::vector<std::filesystem::path> inputs{options.result, options.environment,
-                                            options.model,  options.trajectory,
-                                            options.shifts, options.ledger.options.table};
-  if (!options.section.empty()) inputs.push_back(options.section);
-  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
-  refuse_overwriting(options.outputs.front(), inputs);
+  refuse_overwriting(options.outputs.front(),
+                     options.with({options.environment, options.shifts, options.section,
+                                   options.ledger.options.table}));
   if (options.vehicle.empty()) check_is_model(options.model);
 }
 
 /// The options that a page of a result and one of a section share.
 void add_options_of_both(CLI::App& command, ReportCommand& options) {
-  command
-      .add_option("FILE", options.result,
-                  "Result of clearway run, or section of clearway section find")
-      ->type_name("FILE")
+  add_file(command, "FILE", options.result,
+           "Result of clearway run, or section of clearway section find")
       ->required();
   CLI::Option* environment =
-      command
-          .add_option(
-              "--env", options.environment,
-              "The store that was searched; of a section, for the points that stop the load")
-          ->type_name("FILE");
-  CLI::Option* trajectory =
-      command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)->type_name("FILE");
+      add_file(command, "--env", options.environment,
+               "The store that was searched; of a section, for the points that stop the load");
+  CLI::Option* trajectory = add_file(command, "--trajectory", options.trajectory, kTrajectoryHelp);
   environment->needs(trajectory);
   command
       .add_option("-o,--output", options.outputs,
@@ -198,27 +180,21 @@ void add_options_of_both(CLI::App& command, ReportCommand& options) {
     const GroupScope group(command, OptionGroup::kPage);
     add_page_texts(command, options.report);
   }
-  command.add_flag("--force", options.report.overwrite, "Overwrite existing outputs")
+  command.add_flag("--force", options.force, "Overwrite existing outputs")
       ->group(title_of(OptionGroup::kFiles));
   command.add_flag("--json", options.json, "Print what the page says as one JSON object");
 }
 
 void add_inputs_of_result(CLI::App& command, ReportCommand& options) {
   const GroupScope group(command, OptionGroup::kInputs);
-  CLI::Option* model =
-      command.add_option("--model", options.model, "The model that was moved")->type_name("FILE");
+  CLI::Option* model = add_file(command, "--model", options.model, "The model that was moved");
   add_vehicle_option(command, options.vehicle,
                      "Instead of --model: the vehicle of several bodies that was moved", model);
-  command
-      .add_option(
-          "--section", options.section,
-          "Section of clearway section find on the same path, which the page then shows too")
-      ->type_name("FILE");
-  command
-      .add_option("--shifts", options.shifts,
-                  "Shifts that free the path and its conflicts, which the page then names: JSON of "
-                  "clearway shift -o")
-      ->type_name("FILE");
+  add_file(command, "--section", options.section,
+           "Section of clearway section find on the same path, which the page then shows too");
+  add_file(command, "--shifts", options.shifts,
+           "Shifts that free the path and its conflicts, which the page then names: JSON of "
+           "clearway shift -o");
   add_model_options(command, options.model_options, options.lengths);
 }
 
@@ -264,25 +240,17 @@ void add_options_of_result(CLI::App& command, ReportCommand& options) {
 }  // namespace
 
 ReportSummary perform(ReportCommand& options, const FoundConflicts* found) {
-  ConsoleProgress progress;
-  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  options.find.stop = &stop_flag();
   check_one_page(options);
   check_model_or_vehicle(options);
-  check_is_trajectory(options.trajectory);
-  const Result result(options.result);
-  check_kind_of_model(result, options.model, options.vehicle);
-  check_axes(result, options);
+  OpenedResult opened(options, options);
+  const Result& result = opened.result;
   const Store store(options.environment);
-  if (auto warning = options.lengths.convert_for(store)) {
-    options.report.warnings.push_back(std::move(*warning));
-  }
-  set_environment_unit(store, options.trajectory_options, options.model_options);
   for (const ParsedLength& length : options.classes) {
     options.report.classes.push_back(length.in_units_of(store.metres_per_unit()));
   }
+  const Query query = read_query_again(options, opened, store);
+  options.report.overwrite = options.force;
   options.report.conflicts = options.find;
-  const Query query = read_query_again(options, result, store);
   if (!options.shifts.empty()) {
     options.report.shifts = read_shifts(options.shifts, result.reader());
   }
@@ -325,11 +293,9 @@ void add_options_of_section(CLI::App& command, SectionPage& options, LengthOptio
   lengths.add(command, "--band", options.heights.band,
               "Height of a band of the map of widths (default: 0.1 m)");
   lengths.add(command, "--base", options.heights.base, kBaseHelp, FieldRange::kAny);
-  command
-      .add_option("--conflicts", options.conflicts,
-                  "Names for what stops the load: a CSV file of clearway conflicts on the same "
-                  "path, with a column `name` if you add one")
-      ->type_name("FILE")
+  add_file(command, "--conflicts", options.conflicts,
+           "Names for what stops the load: a CSV file of clearway conflicts on the same "
+           "path, with a column `name` if you add one")
       ->needs(command.get_option("--env"));
 }
 
@@ -373,7 +339,7 @@ SectionPageOptions page_of(ReportCommand& both, SectionPage& options, const Sect
   SectionPageOptions page;
   static_cast<PageTexts&>(page) = both.report;
   if (page.date.empty()) page.date = now_in_utc();
-  page.overwrite = both.report.overwrite;
+  page.overwrite = both.force;
   page.heights = options.heights;
   page.section_name = file_name(both.result);
   if (!both.environment.empty()) page.environment_name = file_name(both.environment);

@@ -225,8 +225,7 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
   const Side side = least_side(report, query);
   out["least_side"] = nullptr;
   if (side != Side::kUnknown) out["least_side"] = name_of(side);
-  out["shard_share"] = nullptr;
-  if (report.shard_share) out["shard_share"] = *report.shard_share;
+  out["shard_share"] = or_null(report.shard_share);
   out["engine"] = known(searched, name_of(report.engine));
   out["device"] = known(searched, name_of(report.device));
   out["device_estimate"] = device_estimate_of(report);

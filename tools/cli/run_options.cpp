@@ -22,14 +22,11 @@ namespace {
 
 void add_inputs(CLI::App& command, RunOptions& options) {
   const GroupScope group(command, OptionGroup::kInputs);
-  command.add_option("--env", options.environment, "The environment: a store of clearway convert")
-      ->type_name("FILE")
+  add_file(command, "--env", options.environment, "The environment: a store of clearway convert")
       ->required();
   CLI::Option* model =
-      command
-          .add_option("--model", options.model,
-                      "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format")
-          ->type_name("FILE");
+      add_file(command, "--model", options.model,
+               "The model: a mesh in STL, OBJ, PLY or OFF, or points in a scan's format");
   command
       .add_option("--vehicle", options.vehicle,
                   "Instead of --model: a JSON file of several bodies that follow the "
@@ -37,13 +34,9 @@ void add_inputs(CLI::App& command, RunOptions& options) {
       ->group(title_of(OptionGroup::kModel))
       ->type_name("FILE")
       ->excludes(model);
-  command.add_option("--trajectory", options.trajectory, kTrajectoryHelp)
-      ->type_name("FILE")
-      ->required();
+  add_file(command, "--trajectory", options.trajectory, kTrajectoryHelp)->required();
   add_required_fields(command, kQueryFields, options.query, options.lengths);
-  command.add_option("-o,--output", options.output, "The result, an HDF5 file")
-      ->type_name("FILE")
-      ->required();
+  add_file(command, "-o,--output", options.output, "The result, an HDF5 file")->required();
   add_fields(command, kKindOfModel, options.model_options, options.lengths);
   add_model_options(command, options.model_options, options.lengths);
   add_turn_options(command, options.model_options.forward, options.model_options.up);

@@ -47,10 +47,6 @@ struct FindCommand {
   bool json = false;
 };
 
-ordered_json motion_json(const std::optional<std::array<double, 2>>& motion) {
-  return motion ? ordered_json(*motion) : ordered_json(nullptr);
-}
-
 ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   ordered_json out = program_json({{"env", options.environment},
                                    {"trajectory", options.trajectory},
@@ -59,7 +55,7 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   out["blocked_in_bins"] = report.blocked_in_bins;
   out["bins"] = report.bins;
   out["rounding"] = report.rounding;
-  out["motion"] = motion_json(report.motion);
+  out["motion"] = or_null(report.motion);
   out["device"] = name_of(report.device);
   out["device_estimate"] = nullptr;
   if (report.estimate) {
@@ -178,15 +174,10 @@ void add_find(CLI::App& section) {
   const auto options = std::make_shared<FindCommand>();
   CLI::App* command = section.add_subcommand(
       "find", "Find which cells of the cross-section are blocked for a load of this length");
-  command->add_option("--env", options->environment, "The environment: a store of clearway convert")
-      ->type_name("FILE")
+  add_file(*command, "--env", options->environment, "The environment: a store of clearway convert")
       ->required();
-  command->add_option("--trajectory", options->trajectory, kTrajectoryHelp)
-      ->type_name("FILE")
-      ->required();
-  command->add_option("-o,--output", options->output, "The section, an HDF5 file")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "--trajectory", options->trajectory, kTrajectoryHelp)->required();
+  add_file(*command, "-o,--output", options->output, "The section, an HDF5 file")->required();
   add_question(*command, *options);
   add_trajectory_options(*command, options->trajectory_options, options->lengths);
   add_fields(*command, kMachineFields<SectionOptions>, options->search, options->lengths);
@@ -233,11 +224,8 @@ void add_export_of_section(CLI::App& section) {
   const auto options = std::make_shared<ExportCommand>();
   CLI::App* command = section.add_subcommand(
       "export", "Write the widths of a section as a table, or the largest outline as DXF");
-  command->add_option("SECTION", options->section, "Section of clearway section find")
-      ->type_name("FILE")
-      ->required();
-  command->add_option("-o,--output", options->output, "The table, a CSV file; or the outline, DXF")
-      ->type_name("FILE")
+  add_file(*command, "SECTION", options->section, "Section of clearway section find")->required();
+  add_file(*command, "-o,--output", options->output, "The table, a CSV file; or the outline, DXF")
       ->required();
   std::vector<std::string> names;
   for (const SectionTable table : kTables) names.emplace_back(name_of(table));

@@ -37,9 +37,7 @@ using Witnesses = std::vector<std::optional<SectionWitness>>;
 
 ordered_json witness_json(const std::optional<SectionWitness>& witness) {
   if (!witness) return nullptr;
-  return {{"source", witness->source},
-          {"xyz", {witness->xyz.x, witness->xyz.y, witness->xyz.z}},
-          {"class", witness->point_class}};
+  return {{"source", witness->source}, {"xyz", witness->xyz}, {"class", witness->point_class}};
 }
 
 ordered_json stop_json(const SectionStop& stop) {
@@ -214,9 +212,7 @@ void add_section_check(CLI::App& section, int& exit_code) {
   const auto options = std::make_shared<CheckCommand>();
   CLI::App* command = section.add_subcommand(
       "check", "Say whether a load with this outline passes, and where it is stopped");
-  command->add_option("SECTION", options->section, "Section of clearway section find")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "SECTION", options->section, "Section of clearway section find")->required();
   add_load_options(*command, options->load, options->lengths);
   add_site_options(*command, options->site, options->lengths);
   command->add_flag("--json", options->json, "Print one JSON object");

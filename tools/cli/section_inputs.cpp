@@ -19,16 +19,12 @@ namespace clearway::tool {
 
 void add_load_options(CLI::App& command, LoadInput& load, LengthOptions& lengths) {
   CLI::Option* outline =
-      command
-          .add_option("--outline", load.outline,
-                      "The outline of the load as text: y,z of each corner in a line, y to the "
-                      "left and z up, or with --mirror height,half_width")
-          ->type_name("FILE");
-  command
-      .add_option("--table", load.table,
-                  "Outlines by stretches of the path: CSV with chainage_from,chainage_to (or "
-                  "station_from,station_to),outline,margin; outline files are relative to it")
-      ->type_name("FILE")
+      add_file(command, "--outline", load.outline,
+               "The outline of the load as text: y,z of each corner in a line, y to the "
+               "left and z up, or with --mirror height,half_width");
+  add_file(command, "--table", load.table,
+           "Outlines by stretches of the path: CSV with chainage_from,chainage_to (or "
+           "station_from,station_to),outline,margin; outline files are relative to it")
       ->excludes(outline);
   lengths.add(command, "--margin", load.margin,
               "Distance to keep on all sides; at most that of the section, which is the default; "
@@ -76,17 +72,13 @@ OutlineTable read_load_table(LoadInput& load, const Section& section, double met
 
 void add_site_options(CLI::App& command, SiteInput& site, LengthOptions& lengths) {
   CLI::Option* environment =
-      command
-          .add_option("--env", site.environment,
-                      "The store that the section was found in: the points that stop the load are "
-                      "looked up there")
-          ->type_name("FILE");
+      add_file(command, "--env", site.environment,
+               "The store that the section was found in: the points that stop the load are "
+               "looked up there");
   CLI::Option* trajectory =
-      command
-          .add_option("--trajectory", site.trajectory,
-                      "The path that the section was found for, with --env or for a table by "
-                      "station")
-          ->type_name("FILE");
+      add_file(command, "--trajectory", site.trajectory,
+               "The path that the section was found for, with --env or for a table by "
+               "station");
   environment->needs(trajectory);
   add_trajectory_options(command, site.trajectory_options, lengths);
 }

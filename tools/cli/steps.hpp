@@ -73,15 +73,9 @@ RunOutcome perform(RunOptions& options);
 
 /// The options of `clearway conflicts`.
 struct ConflictsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, model, vehicle;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
   std::string date = ConflictFile::kNoDate;
   LedgerCommand ledger;
-  std::uint64_t show = 20;
   bool fail_on_collision = false;
-  bool force = false;
-  bool json = false;
 };
 
 /// The conflicts in words.
@@ -103,13 +97,7 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found = null
 
 /// The options of `clearway stations`.
 struct StationsCommand : ConflictCommand {
-  std::filesystem::path result, trajectory, vehicle;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
   double every = StationOptions{}.every;
-  std::uint64_t show = 20;
-  bool force = false;
-  bool json = false;
 };
 
 /// The stretches of the path in words.
@@ -122,14 +110,12 @@ void add_options(CLI::App& command, StationsCommand& options);
 StationsOutcome perform(StationsCommand& options);
 
 /// The options of `clearway report` for the page of a result.
+/// It has one output, but the page of a section may also have a picture.
 struct ReportCommand : ConflictCommand {
-  std::filesystem::path result, environment, model, vehicle, trajectory, section, shifts;
-  std::vector<std::filesystem::path> outputs;  ///< one: the page of a section may have a picture
-  ModelOptions model_options;
+  std::filesystem::path environment, section, shifts;
   ReportOptions report;
   LedgerCommand ledger;
   std::vector<ParsedLength> classes;
-  bool json = false;
   const CLI::App* command = nullptr;  ///< the command that has these options
 };
 

@@ -92,9 +92,7 @@ void add_verify(CLI::App& program, int& exit_code) {
   auto options = std::make_shared<VerifyOptions>();
   CLI::App* command = program.add_subcommand(
       "verify", "Re-read and check everything in a store, a result, a section or a journal");
-  command->add_option("FILE", options->file, "Store, result, section or journal")
-      ->type_name("FILE")
-      ->required();
+  add_file(*command, "FILE", options->file, "Store, result, section or journal")->required();
   command->add_flag("--json", options->json, "Print one JSON object");
   command->footer(
       "Names every damaged cell (at most 20), or the first damaged record of a journal.\n"

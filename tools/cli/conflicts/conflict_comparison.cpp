@@ -37,35 +37,21 @@ namespace {
 
 /// One of the two results that are compared.
 struct ComparedSide {
-  ComparedSide(ConflictComparison& options, const std::filesystem::path& file,
-               const std::filesystem::path& trajectory, const std::filesystem::path& model,
-               const std::filesystem::path& vehicle, const Conflicts* grouped_as = nullptr)
-      : result(file), has_shifts(!model.empty() || !vehicle.empty()) {
-    check_kind_of_model(result, model, vehicle);
-    check_axes(result, options);
+  ComparedSide(ConflictComparison& options, const SearchedFiles& files,
+               const Conflicts* grouped_as = nullptr)
+      : opened(options, files), has_shifts(!files.model.empty() || !files.vehicle.empty()) {
     repeat_warnings(result.reader(), result.reader().name() + ": ");
-    poses = read_poses(trajectory, options.trajectory_options, result);
-    std::vector<Body> bodies;
-    if (!vehicle.empty()) {
-      std::vector<Message> messages;
-      bodies = read_bodies_of(vehicle, options.model_options, options, poses, result, messages);
-      for (const Message& message : messages) {
-        if (message.severity == Message::Severity::kWarning) log_message(message);
-      }
-    }
+    opened.read();
+    opened.log_messages();
     ConflictOptions find = options.find;
-    find.bodies = bodies;
+    if (files.model.empty()) find.model = nullptr;
+    find.station = {};
     if (grouped_as != nullptr) {
       find.gap = grouped_as->gap;
       find.min_points = grouped_as->min_points;
     }
-    Model shape;
-    if (!model.empty()) {
-      shape = read_model_of(model, options.model_options, result);
-      find.model = &shape;
-    }
-    conflicts = find_conflicts(result, poses, find, &conflict_of, &conflict_of_near);
-    chainage = chainage_of(poses);
+    conflicts = find_conflicts(result, opened.poses, find, &conflict_of, &conflict_of_near);
+    chainage = chainage_of(opened.poses);
     for (double& metres : chainage) metres += find.chainage_start;
   }
 
@@ -82,7 +68,7 @@ struct ComparedSide {
     out.doubts = answer.doubts();
     for (const Reason reason : answer.reasons()) out.reasons.emplace_back(name_of(reason));
     out.chainage = chainage;
-    for (const Pose& pose : poses) out.path.push_back(pose.position());
+    for (const Pose& pose : opened.poses) out.path.push_back(pose.position());
     out.scanned = result.reader().findings().scanned;
     out.has_distances = header.clearance > 0;
     out.has_surface = header.model_triangles > 0;
@@ -91,11 +77,11 @@ struct ComparedSide {
     return out;
   }
   GroupedResult grouped() const {
-    return {result, conflicts, conflict_of, conflict_of_near, poses};
+    return {result, conflicts, conflict_of, conflict_of_near, opened.poses};
   }
 
-  Result result;
-  std::vector<Pose> poses;
+  OpenedResult opened;
+  const Result& result = opened.result;
   Conflicts conflicts;
   std::vector<std::uint32_t> conflict_of, conflict_of_near;
   std::vector<double> chainage;  ///< of each pose, metres
@@ -294,24 +280,15 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
                              CLI::Option* conflicts) {
   const std::vector<CLI::Option*> before = command.get_options();
   const GroupScope inputs(command, OptionGroup::kInputs);
-  command.add_option("--trajectory", options.trajectory, "The trajectory of A, and of B")
-      ->type_name("FILE");
-  command
-      .add_option("--trajectory-b", options.trajectory_b,
-                  "The trajectory of B, where it is another")
-      ->type_name("FILE");
-  command
-      .add_option("--model", options.model,
-                  "The model of A, and of B: for shifts, which show how deep a surface is touched")
-      ->type_name("FILE");
-  command.add_option("--model-b", options.model_b, "The model of B, where it is another")
-      ->type_name("FILE");
-  command
-      .add_option("--vehicle", options.vehicle,
-                  "The vehicle of several bodies of A, and of B: for sides and shifts")
-      ->type_name("FILE");
-  command.add_option("--vehicle-b", options.vehicle_b, "The vehicle of B, where it is another")
-      ->type_name("FILE");
+  add_file(command, "--trajectory", options.trajectory, "The trajectory of A, and of B");
+  add_file(command, "--trajectory-b", options.b.trajectory,
+           "The trajectory of B, where it is another");
+  add_file(command, "--model", options.model,
+           "The model of A, and of B: for shifts, which show how deep a surface is touched");
+  add_file(command, "--model-b", options.b.model, "The model of B, where it is another");
+  add_file(command, "--vehicle", options.vehicle,
+           "The vehicle of several bodies of A, and of B: for sides and shifts");
+  add_file(command, "--vehicle-b", options.b.vehicle, "The vehicle of B, where it is another");
   add_model_options(command, options.model_options, options.lengths);
   add_conflict_options(command, options);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
@@ -326,10 +303,8 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
     command.add_flag("--allow-other-question", options.allow_other_question,
                      "Compare results of different questions; they differ otherwise (exit code 1)");
   }
-  command
-      .add_option("-o,--output", options.outputs,
-                  "Write the comparison to a file: .csv, .json or .html; may be repeated")
-      ->type_name("FILE")
+  add_file(command, "-o,--output", options.outputs,
+           "Write the comparison to a file: .csv, .json or .html; may be repeated")
       ->expected(1)
       ->take_all();
   const GroupScope files(command, OptionGroup::kFiles);
@@ -339,34 +314,19 @@ void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
   }
 }
 
-int compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
-                      const std::filesystem::path& b, std::uint64_t show, bool json) {
+int compare_conflicts(ConflictComparison& options) {
   if (options.trajectory.empty()) {
     throw UsageError("--conflicts needs --trajectory, the trajectory of the runs");
   }
-  const auto or_a = [](const std::filesystem::path& of_b, const std::filesystem::path& of_a) {
-    return of_b.empty() ? of_a : of_b;
-  };
-  const std::filesystem::path path_b = or_a(options.trajectory_b, options.trajectory);
-  const std::filesystem::path vehicle_b = or_a(options.vehicle_b, options.vehicle);
-  const std::filesystem::path model_b = or_a(options.model_b, options.model);
-  std::deque<PendingFile> outputs;
-  for (const std::filesystem::path& output : options.outputs) {
-    check_comparison_ending(output);
-    refuse_overwriting(output, {a, b, options.trajectory, path_b, options.model, model_b,
-                                options.vehicle, vehicle_b});
-    outputs.emplace_back(output, options.force);
+  for (const auto of :
+       {&SearchedFiles::trajectory, &SearchedFiles::model, &SearchedFiles::vehicle}) {
+    if ((options.b.*of).empty()) options.b.*of = options.*of;
   }
-  const Result first(a);
-  const double unit = options.lengths.convert_for(a, first.reader().header());
-  options.trajectory_options.environment_unit = unit;
-  options.model_options.environment_unit = unit;
-  ConsoleProgress progress;
-  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  options.find.stop = &stop_flag();
-  ComparedSide in_a(options, a, options.trajectory, options.model, options.vehicle);
+  NewOutputs<ComparisonFormat> outputs(options, comparison_format_of,
+                                       options.b.with(options.with({})));
+  ComparedSide in_a(options, options);
   // Both are grouped as a is, so that a scan of another density has the same groups.
-  ComparedSide in_b(options, b, path_b, model_b, vehicle_b, &in_a.conflicts);
+  ComparedSide in_b(options, options.b, &in_a.conflicts);
   ComparedConflicts found;
   found.questions =
       question_differences(in_a.result.reader().header(), in_b.result.reader().header());
@@ -384,11 +344,11 @@ int compare_conflicts(ConflictComparison& options, const std::filesystem::path& 
                      found.a.unit + " as in " + found.a.file);
   }
   find_worse(found);
-  for (std::size_t i = 0; i < outputs.size(); ++i) {
-    write_comparison(found, options.outputs[i], outputs[i].partial());
-  }
-  for (PendingFile& output : outputs) output.publish();
-  print(json ? json_of(found) : text_of(found, show));
+  std::size_t written = 0;
+  outputs.write([&](ComparisonFormat format, const std::filesystem::path& path) {
+    write_comparison(found, format, options.outputs[written++], path);
+  });
+  print(options.json ? json_of(found) : text_of(found, options.show));
   return found.exit_code();
 }
 
@@ -400,20 +360,16 @@ ordered_json json_of_conflict(const Conflict& c) {
   ordered_json out{{"id", c.id},
                    {"points", c.points},
                    {"source", c.source},
-                   {"lo", {c.box.lo.x, c.box.lo.y, c.box.lo.z}},
-                   {"hi", {c.box.hi.x, c.box.hi.y, c.box.hi.z}},
-                   {"centroid", {c.centroid.x, c.centroid.y, c.centroid.z}},
+                   {"lo", c.box.lo},
+                   {"hi", c.box.hi},
+                   {"centroid", c.centroid},
                    {"chainage_from", c.chainage_from},
                    {"chainage_to", c.chainage_to},
-                   {"obstacle_chainage", nullptr},
-                   {"least_distance", nullptr},
-                   {"own_shift_left", nullptr},
-                   {"own_shift_right", nullptr},
+                   {"obstacle_chainage", or_null(c.obstacle_chainage)},
+                   {"least_distance", or_null(c.least_distance)},
+                   {"own_shift_left", or_null(c.own_shift_left)},
+                   {"own_shift_right", or_null(c.own_shift_right)},
                    {"side", name_of(c.side)}};
-  if (c.obstacle_chainage) out["obstacle_chainage"] = *c.obstacle_chainage;
-  if (c.least_distance) out["least_distance"] = *c.least_distance;
-  if (c.own_shift_left) out["own_shift_left"] = *c.own_shift_left;
-  if (c.own_shift_right) out["own_shift_right"] = *c.own_shift_right;
   if (c.main_class) out["main_class"] = *c.main_class;
   if (c.main_class_points) out["main_class_points"] = *c.main_class_points;
   return out;
@@ -438,20 +394,16 @@ ordered_json json_of_pairs(const ComparedConflicts& found,
 ordered_json json_of_small(const SmallGroup& group) {
   return {{"points", group.points},
           {"source", group.source},
-          {"lo", {group.box.lo.x, group.box.lo.y, group.box.lo.z}},
-          {"hi", {group.box.hi.x, group.box.hi.y, group.box.hi.z}},
+          {"lo", group.box.lo},
+          {"hi", group.box.hi},
           {"chainage_from", group.chainage_from},
           {"chainage_to", group.chainage_to}};
 }
 
 ordered_json json_of_part(const ConflictPart& part, const ComparedResult& side) {
   const auto [from, to] = chainages_of(part, side);
-  return {{"id", part.conflict},
-          {"points", part.points},
-          {"source", part.source},
-          {"lo", {part.box.lo.x, part.box.lo.y, part.box.lo.z}},
-          {"hi", {part.box.hi.x, part.box.hi.y, part.box.hi.z}},
-          {"chainage_from", from},
+  return {{"id", part.conflict}, {"points", part.points}, {"source", part.source},
+          {"lo", part.box.lo},   {"hi", part.box.hi},     {"chainage_from", from},
           {"chainage_to", to}};
 }
 
@@ -670,12 +622,11 @@ std::string json_of(const ComparedConflicts& found) {
     not_searched.push_back(json_of_part(part, found.a));
     not_searched.back()["reasons"] = part.reasons;
   }
-  const ordered_json older = found.is_older ? ordered_json(*found.is_older) : ordered_json();
   const ordered_json out{{"a", side(found.a)},
                          {"b", side(found.b)},
                          {"holds", found.holds()},
                          {"same_scan", found.is_same_scan()},
-                         {"older", older},
+                         {"older", or_null(found.is_older)},
                          {"questions", questions},
                          {"new", json_of_list(found.b.conflicts, found.match.added)},
                          {"new_parts", grown},
@@ -694,21 +645,22 @@ std::string json_of(const ComparedConflicts& found) {
   return indented_text(out, -1);
 }
 
-void check_comparison_ending(const std::filesystem::path& output) {
+ComparisonFormat comparison_format_of(const std::filesystem::path& output) {
   const std::string ending = file_ending(output);
-  if (ending == ".csv" || ending == ".json" || ending == ".html") return;
+  if (ending == ".csv") return ComparisonFormat::kCsv;
+  if (ending == ".json") return ComparisonFormat::kJson;
+  if (ending == ".html") return ComparisonFormat::kHtml;
   throw UsageError(output.string() +
                    ": unknown output format; the name must end in .csv, .json or .html");
 }
 
-void write_comparison(const ComparedConflicts& found, const std::filesystem::path& output,
-                      const std::filesystem::path& path) {
-  const std::string ending = file_ending(output);
+void write_comparison(const ComparedConflicts& found, ComparisonFormat format,
+                      const std::filesystem::path& output, const std::filesystem::path& path) {
   const File file = File::create(path);
   TextWriter out(file);
-  out << (ending == ".csv"    ? csv_of(found)
-          : ending == ".json" ? json_of(found)
-                              : html_of(found, output));
+  out << (format == ComparisonFormat::kCsv    ? csv_of(found)
+          : format == ComparisonFormat::kJson ? json_of(found)
+                                              : html_of(found, output));
   out.flush();
 }
 

@@ -17,13 +17,11 @@
 
 namespace clearway::tool {
 
-/// The options of `clearway compare --conflicts`.
+/// The options of `clearway compare --conflicts`, with the files of a.
 struct ConflictComparison : ConflictCommand {
-  std::filesystem::path trajectory, trajectory_b, model, model_b, vehicle, vehicle_b;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
+  SearchedFiles b;         ///< what is not given is that of a
   double worse_by = 0.02;  ///< metres by which a conflict must come nearer, or deeper, to be worse
-  bool allow_other_question = false, force = false;
+  bool allow_other_question = false;
 };
 
 /// Adds --trajectory, --trajectory-b and the other options that only this comparison takes; all
@@ -31,10 +29,9 @@ struct ConflictComparison : ConflictCommand {
 void add_conflict_comparison(CLI::App& command, ConflictComparison& options,
                              CLI::Option* conflicts);
 
-/// Prints which conflicts are new, worse, gone and the same, at most `show` of each list, and how
-/// the questions differ. Returns ComparedConflicts::exit_code().
-int compare_conflicts(ConflictComparison& options, const std::filesystem::path& a,
-                      const std::filesystem::path& b, std::uint64_t show, bool json);
+/// Prints which conflicts are new, worse, gone and the same, and how the questions differ. Returns
+/// ComparedConflicts::exit_code().
+int compare_conflicts(ConflictComparison& options);
 
 /// The listed conflict with this id; ids count from 1.
 inline const Conflict& conflict_at(const Conflicts& conflicts, std::uint32_t id) {
@@ -116,12 +113,13 @@ std::string sentence_of(const ComparedConflicts& found);
 /// The comparison as one JSON object, with a line break at its end.
 std::string json_of(const ComparedConflicts& found);
 
-/// Throws UsageError unless `output` ends in .csv, .json or .html, the forms in which a comparison
-/// is written.
-void check_comparison_ending(const std::filesystem::path& output);
+enum class ComparisonFormat { kCsv, kJson, kHtml };
 
-/// Writes the comparison to `path`, in the form that the ending of `output` names.
-void write_comparison(const ComparedConflicts& found, const std::filesystem::path& output,
-                      const std::filesystem::path& path);
+/// The form that the ending of a file's name means. Throws UsageError for another ending.
+ComparisonFormat comparison_format_of(const std::filesystem::path& output);
+
+/// Writes the comparison to `path`, from which it gets to `output`.
+void write_comparison(const ComparedConflicts& found, ComparisonFormat format,
+                      const std::filesystem::path& output, const std::filesystem::path& path);
 
 }  // namespace clearway::tool

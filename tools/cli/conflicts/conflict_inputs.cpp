@@ -1,18 +1,20 @@
 #include "cli/conflicts/conflict_inputs.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iterator>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
-#include "cli/support/console.hpp"
+#include "cli/input_roles.hpp"
 #include "cli/support/field_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/describe/ledger.hpp"
 #include "core/util/format.hpp"
 #include "io/files/input_error.hpp"
@@ -21,6 +23,28 @@
 #include "io/result/result.hpp"
 
 namespace clearway::tool {
+namespace {
+
+/// Options that read the model of a result again as it was read for the search, and turn it as its
+/// run did.
+ModelOptions model_options_of(const ResultHeader& header, ModelOptions options) {
+  options.radius = header.radius;
+  if (const double metre = metres_of(unit_of(header)); metre > 0) options.environment_unit = metre;
+  options.forward = header.notes.model_axes.forward;
+  options.up = header.notes.model_axes.up;
+  if (header.model_solids > 0) {
+    options.as = ModelAs::kSolid;
+  } else if (header.model_triangles > 0) {
+    options.as = ModelAs::kSurface;
+  } else {
+    options.as = ModelAs::kPoints;
+    if (!options.asks_for_points()) options.spacing = header.notes.model_spacing;
+  }
+  return options;
+}
+
+}  // namespace
+
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
   const GroupScope group(command, OptionGroup::kConflicts);
   options.lengths.add(
@@ -82,114 +106,132 @@ void add_axis_options(CLI::App& command, ConflictCommand& options) {
                       "Axis of the model that points up, for example -z (default: +z)")};
 }
 
-void check_axes(const Result& result, const ConflictCommand& options) {
+void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
+                        const std::string& description, CLI::Option* model) {
+  add_file(command, "--vehicle", vehicle, description)->excludes(model);
+}
+
+std::vector<std::filesystem::path> SearchedFiles::with(
+    std::vector<std::filesystem::path> others) const {
+  others.insert(others.end(), {result, trajectory, model});
+  return vehicle.empty() ? others : vehicle_inputs(vehicle, std::move(others));
+}
+
+void add_result_inputs(CLI::App& command, ConflictCommand& options) {
+  add_file(command, "RESULT", options.result, "Result of clearway run with --first-pose")
+      ->required();
+  add_file(command, "--trajectory", options.trajectory, "The trajectory of the run")->required();
+}
+
+OpenedResult::OpenedResult(ConflictCommand& options, const SearchedFiles& files)
+    : result((check_is_trajectory(files.trajectory), files.result)),
+      options_(options),
+      files_(files) {
+  const std::string& name = result.reader().name();
+  if (result.bodies().empty() && !files.vehicle.empty()) {
+    throw InputError(name + ": is of one model; --vehicle is for results of several bodies");
+  }
+  if (!result.bodies().empty() && !files.model.empty()) {
+    throw InputError(name + ": is of a vehicle of several bodies; give it with --vehicle");
+  }
   const ModelAxes kept = result.model_axes();
   const bool given = std::ranges::any_of(
       options.axes, [](const CLI::Option* axis) { return axis != nullptr && !axis->empty(); });
-  if (!kept.need_turn() || !given) return;
-  throw UsageError(result.reader().name() + ": its run turned the model by --forward " +
-                   name_of(kept.forward) + " --up " + name_of(kept.up) +
-                   ", and this command turns the model's file in the same way; leave out its own "
-                   "--forward and --up");
+  if (kept.need_turn() && given) {
+    throw UsageError(name + ": its run turned the model by --forward " + name_of(kept.forward) +
+                     " --up " + name_of(kept.up) +
+                     ", and this command turns the model's file in the same way; leave out its own "
+                     "--forward and --up");
+  }
+  options.find.progress = [this](const ProgressUpdate& update) { progress_.update(update); };
+  options.find.stop = &stop_flag();
 }
 
-void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
-                        const std::string& description, CLI::Option* model) {
-  command.add_option("--vehicle", vehicle, description)->type_name("FILE")->excludes(model);
-}
-
-void add_searched_inputs(CLI::App& command, const std::string& about_result,
-                         std::filesystem::path& result, std::filesystem::path& environment,
-                         std::filesystem::path& model, std::filesystem::path& vehicle,
-                         std::filesystem::path& trajectory) {
-  command.add_option("RESULT", result, about_result)->type_name("FILE")->required();
-  command.add_option("--env", environment, "The store that was searched")
-      ->type_name("FILE")
-      ->required();
-  CLI::Option* of_model =
-      command.add_option("--model", model, "The model that was moved")->type_name("FILE");
-  add_vehicle_option(command, vehicle,
-                     "Instead of --model: the vehicle of several bodies that was moved", of_model);
-  command.add_option("--trajectory", trajectory, kTrajectoryHelp)->type_name("FILE")->required();
-}
-
-std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result, PoseLabels* labels) {
-  options.default_crs = result.reader().header().crs_wkt;
-  std::vector<Message> remarks;
-  std::vector<Pose> poses = read_trajectory(path, options, &remarks, labels);
-  for (const Message& remark : remarks) log_message(remark);
-  return poses;
-}
-
-ModelOptions model_options_of(const Result& result, ModelOptions options) {
+void OpenedResult::read(const Store* store) {
   const ResultHeader& header = result.reader().header();
-  options.radius = header.radius;
-  if (const double metre = metres_of(unit_of(header)); metre > 0) options.environment_unit = metre;
-  options.forward = header.notes.model_axes.forward;
-  options.up = header.notes.model_axes.up;
-  if (header.model_solids > 0) {
-    options.as = ModelAs::kSolid;
-  } else if (header.model_triangles > 0) {
-    options.as = ModelAs::kSurface;
+  if (store != nullptr) {
+    if (auto warning = options_.lengths.convert_for(*store))
+      messages.push_back(std::move(*warning));
+    set_environment_unit(*store, options_.trajectory_options, options_.model_options);
   } else {
-    options.as = ModelAs::kPoints;
-    if (!options.asks_for_points()) options.spacing = header.notes.model_spacing;
+    options_.model_options.environment_unit = options_.trajectory_options.environment_unit =
+        options_.lengths.convert_for(files_.result, header);
   }
-  return options;
+  options_.trajectory_options.default_crs = header.crs_wkt;
+  poses = read_trajectory(files_.trajectory, options_.trajectory_options, &messages, &labels);
+  messages_of_path = messages.size();
+  options_.find.station = labels.station;
+  const ModelOptions again = model_options_of(header, options_.model_options);
+  if (!files_.model.empty()) {
+    read_model_again(again);
+    options_.find.model = &model;
+  }
+  if (!files_.vehicle.empty()) read_bodies_again(again);
+  options_.find.bodies = bodies;
 }
 
-void check_kind_of_model(const Result& result, const std::filesystem::path& model,
-                         const std::filesystem::path& vehicle) {
-  const std::string& name = result.reader().name();
-  if (result.bodies().empty() && !vehicle.empty()) {
-    throw InputError(name + ": is of one model; give it with --model");
-  }
-  if (!result.bodies().empty() && !model.empty()) {
-    throw InputError(name + ": is of a vehicle of several bodies; give it with --vehicle");
+void OpenedResult::log_messages() const {
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    const bool of_bodies = !bodies.empty() && messages[i].severity == Message::Severity::kWarning;
+    if (i < messages_of_path || of_bodies) log_message(messages[i]);
   }
 }
 
-std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
-                                 const ConflictCommand& options, const std::vector<Pose>& path,
-                                 const Result& result, std::vector<Message>& warnings) {
-  VehicleOptions all{model_options_of(result, model), options.trajectory_options,
-                     options.find.threads};
-  all.trajectory.default_crs = result.reader().header().crs_wkt;
-  // The run took each body for what its file holds, or all bodies for what it was told. Only the
-  // hash says which it was.
-  const ModelAs told = all.model.as;
-  std::vector<Message> of_auto;
-  all.model.as = told == ModelAs::kPoints ? told : ModelAs::kAuto;
-  std::vector<Body> bodies = read_vehicle(vehicle, path, all, &of_auto);
-  if (all.model.as != told && hash_of_bodies(bodies) != result.reader().header().model_hash) {
+void OpenedResult::read_model_again(const ModelOptions& again) {
+  model = read_model(files_.model, again, &messages);
+  const ResultHeader& header = result.reader().header();
+  const std::uint64_t hash = hash_of_model(model);
+  if (model.vertices.size() == header.model_points && hash == header.model_hash) return;
+  refuse(files_.model.string(),
+         "is not the model of " + result.reader().name() + ": it has " +
+             format_count(model.vertices.size()) + " points with the hash " + hash_text(hash) +
+             ", expected " + format_count(header.model_points) + " with the hash " +
+             hash_text(header.model_hash) + "; give the file of the run, with the same options");
+}
+
+/// The run took each body for what its file holds, or all bodies for what it was told. Only the
+/// hash says which it was.
+void OpenedResult::read_bodies_again(const ModelOptions& again) {
+  VehicleOptions all{again, options_.trajectory_options, options_.find.threads};
+  const ModelAs told = again.as;
+  const auto read_as = [&](ModelAs as) {
+    std::vector<Message> said;
+    all.model.as = as;
+    std::vector<Body> read = read_vehicle(files_.vehicle, poses, all, &said);
+    return std::pair(std::move(read), std::move(said));
+  };
+  auto found = read_as(told == ModelAs::kPoints ? told : ModelAs::kAuto);
+  const std::uint64_t hash = result.reader().header().model_hash;
+  if (all.model.as != told && hash_of_bodies(found.first) != hash) {
     try {
-      all.model.as = told;
-      std::vector<Message> of_told;
-      std::vector<Body> others = read_vehicle(vehicle, path, all, &of_told);
-      if (hash_of_bodies(others) == result.reader().header().model_hash) {
-        bodies = std::move(others);
-        of_auto = std::move(of_told);
-      }
+      auto others = read_as(told);
+      if (hash_of_bodies(others.first) == hash) found = std::move(others);
     } catch (const Error&) {
       // Then the vehicle is another one, which is said where the bodies are compared.
     }
   }
-  std::ranges::move(of_auto, std::back_inserter(warnings));
-  return bodies;
+  bodies = std::move(found.first);
+  std::ranges::move(found.second, std::back_inserter(messages));
 }
 
-Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                    const Result& result) {
-  Model shape = read_model(path, model_options_of(result, options));
-  const ResultHeader& header = result.reader().header();
-  const std::uint64_t hash = hash_of_model(shape);
-  if (shape.vertices.size() == header.model_points && hash == header.model_hash) return shape;
-  refuse(path.string(), "is not the model of " + result.reader().name() + ": it has " +
-                            format_count(shape.vertices.size()) + " points with the hash " +
-                            hash_text(hash) + ", expected " + format_count(header.model_points) +
-                            " with the hash " + hash_text(header.model_hash) +
-                            "; give the file of the run, with the same options");
+std::size_t TextColumn::width() const {
+  std::size_t width = std::max(least_width, title.size());
+  for (const std::string& cell : cells) width = std::max(width, cell.size());
+  return width;
 }
+
+std::string table_text(const std::vector<TextColumn>& columns) {
+  std::vector<std::string> lines(1 + columns.front().cells.size());
+  for (const TextColumn& column : columns) {
+    const std::size_t width = column.to_left ? 0 : column.width();
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      lines[i] += fmt::format("{}{:>{}}", lines[i].empty() ? "" : "  ",
+                              i == 0 ? column.title : column.cells[i - 1], width);
+    }
+  }
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
+std::string range_text(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }
 
 }  // namespace clearway::tool

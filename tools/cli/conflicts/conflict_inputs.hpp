@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -11,7 +14,9 @@
 #include "clearway/model.hpp"
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
+#include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
+#include "io/files/pending_file.hpp"
 
 namespace CLI {
 class App;
@@ -20,13 +25,28 @@ class Option;
 
 namespace clearway::tool {
 
-/// The options that commands which find conflicts take besides the results.
-struct ConflictCommand {
+/// A result, and the files that were searched for it; empty where they are not given.
+struct SearchedFiles {
+  std::filesystem::path result, trajectory, model, vehicle;
+
+  /// All of them with the files that the vehicle names, and `others`.
+  std::vector<std::filesystem::path> with(std::vector<std::filesystem::path> others) const;
+};
+
+/// What commands about the conflicts of a result have in common.
+struct ConflictCommand : SearchedFiles {
+  std::vector<std::filesystem::path> outputs;
   ConflictOptions find;
+  ModelOptions model_options;
   TrajectoryOptions trajectory_options;
   LengthOptions lengths;
   std::array<const CLI::Option*, 2> axes{};  ///< --forward and --up, where the command has them
+  std::uint64_t show = 20;
+  bool force = false, json = false;
 };
+
+/// Adds RESULT and --trajectory.
+void add_result_inputs(CLI::App& command, ConflictCommand& options);
 
 /// Adds --gap, --min-points, --split, --chainage-start, --memory and --threads.
 void add_conflict_options(CLI::App& command, ConflictCommand& options);
@@ -53,42 +73,104 @@ Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
 /// Adds --forward and --up, which say how the model is seen. `options` outlive the command.
 void add_axis_options(CLI::App& command, ConflictCommand& options);
 
-/// Throws UsageError where --forward or --up is given for a result whose run turned the model.
-void check_axes(const Result& result, const ConflictCommand& options);
-
 /// Adds --vehicle to a command that takes --model, which is the option `model`.
 void add_vehicle_option(CLI::App& command, std::filesystem::path& vehicle,
                         const std::string& description, CLI::Option* model);
 
-/// Adds RESULT, described by `about_result`, and what was searched for it: --env, --model,
-/// --vehicle and --trajectory.
-void add_searched_inputs(CLI::App& command, const std::string& about_result,
-                         std::filesystem::path& result, std::filesystem::path& environment,
-                         std::filesystem::path& model, std::filesystem::path& vehicle,
-                         std::filesystem::path& trajectory);
+/// A result with the path, and the model or the bodies, that were searched for it.
+class OpenedResult {
+ public:
+  /// Opens the result of some files. Throws InputError where a vehicle is given for the result of
+  /// one model, or a model for that of a vehicle, and UsageError where --forward or --up is given
+  /// for a result whose run turned the model. All arguments outlive this object.
+  OpenedResult(ConflictCommand& options, const SearchedFiles& files);
+  OpenedResult(const OpenedResult&) = delete;
+  OpenedResult& operator=(const OpenedResult&) = delete;
 
-/// Reads the poses of a result's trajectory and logs the warnings. labels: where given, becomes
-/// what the file says of its poses.
-std::vector<Pose> read_poses(const std::filesystem::path& path, TrajectoryOptions options,
-                             const Result& result, PoseLabels* labels = nullptr);
+  /// Reads the files that are given, with lengths in the unit of the store or else of the result,
+  /// and sets in the options what finding conflicts needs to know of them. Throws InputError for
+  /// another model than that of the result. store: that was searched, where it is open.
+  void read(const Store* store = nullptr);
+  /// Logs the messages of read(), of bodies the warnings alone.
+  void log_messages() const;
 
-/// Options that read the model of a result again as it was read for the search, and turn it as its
-/// run did.
-ModelOptions model_options_of(const Result& result, ModelOptions options);
+  Result result;
+  std::vector<Pose> poses;
+  PoseLabels labels;
+  Model model;
+  std::vector<Body> bodies;
+  std::vector<Message> messages;     ///< of reading, those of the path first
+  std::size_t messages_of_path = 0;  ///< how many of them are
 
-/// Throws InputError where a vehicle is given for the result of one model, or a model for the
-/// result of a vehicle.
-void check_kind_of_model(const Result& result, const std::filesystem::path& model,
-                         const std::filesystem::path& vehicle);
+ private:
+  void read_model_again(const ModelOptions& again);
+  void read_bodies_again(const ModelOptions& again);
 
-/// Reads the bodies of the vehicle that a result is of, at the poses of its path. Throws as
-/// read_vehicle.
-std::vector<Body> read_bodies_of(const std::filesystem::path& vehicle, const ModelOptions& model,
-                                 const ConflictCommand& options, const std::vector<Pose>& path,
-                                 const Result& result, std::vector<Message>& warnings);
+  ConflictCommand& options_;
+  const SearchedFiles& files_;
+  ConsoleProgress progress_;
+};
 
-/// Reads the model that a result is of. Throws InputError for another model.
-Model read_model_of(const std::filesystem::path& path, const ModelOptions& options,
-                    const Result& result);
+/// Outputs that do not exist yet, with their formats.
+template <typename Format>
+class NewOutputs {
+ public:
+  /// format_of: throws UsageError for an unknown ending. inputs: must not be overwritten.
+  NewOutputs(const ConflictCommand& options, Format (*format_of)(const std::filesystem::path&),
+             const std::vector<std::filesystem::path>& inputs) {
+    for (const std::filesystem::path& path : options.outputs) formats_.push_back(format_of(path));
+    for (const std::filesystem::path& path : options.outputs) {
+      refuse_overwriting(path, inputs);
+      files_.emplace_back(path, options.force);
+    }
+  }
+
+  bool has(Format format) const { return std::ranges::find(formats_, format) != formats_.end(); }
+
+  /// Calls write(format, path) for each, and then publishes all.
+  template <typename Write>
+  void write(const Write& write) {
+    for (std::size_t i = 0; i < files_.size(); ++i) write(formats_[i], files_[i].partial());
+    for (PendingFile& file : files_) file.publish();
+  }
+
+ private:
+  std::vector<Format> formats_;
+  std::deque<PendingFile> files_;
+};
+
+/// A column of a table on the terminal.
+struct TextColumn {
+  std::string title;
+  std::size_t least_width = 0;
+  std::vector<std::string> cells = {};
+  bool to_left = false;  ///< as words are at the end of a line
+
+  std::size_t width() const;
+};
+
+/// Adds columns of some rows.
+template <typename Row>
+class TextColumns {
+ public:
+  explicit TextColumns(std::vector<const Row*> rows) : rows_(std::move(rows)) {}
+
+  template <typename CellOf>
+  TextColumn& add(const std::string& title, std::size_t least_width, const CellOf& cell_of) {
+    TextColumn& column = columns.emplace_back(TextColumn{title, least_width});
+    for (const Row* row : rows_) column.cells.push_back(cell_of(*row));
+    return column;
+  }
+
+  std::vector<TextColumn> columns;
+
+ private:
+  std::vector<const Row*> rows_;
+};
+
+/// The titles in a line, and each row in one.
+std::string table_text(const std::vector<TextColumn>& columns);
+/// A range of chainages or stations.
+std::string range_text(double from, double to);
 
 }  // namespace clearway::tool

@@ -67,8 +67,6 @@ std::string length_cell(const std::optional<double>& length, int digits) {
   return length ? fmt::format("{:.{}f}", *length, digits) : "-";
 }
 
-std::string range_cell(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }
-
 /// A length that is known to be at least so much.
 std::string bound_cell(const std::optional<double>& length) {
   return length ? ">= " + length_cell(length, 3) : "-";
@@ -89,18 +87,6 @@ std::string class_cell(const Conflict& c) {
   return c.main_class_points == c.points ? words : format_count(*c.main_class_points) + " " + words;
 }
 
-/// A column of the table on the terminal: its title and its cells.
-struct TextColumn {
-  std::string title;
-  std::vector<std::string> cells;
-
-  std::size_t width() const {
-    std::size_t width = title.size();
-    for (const std::string& cell : cells) width = std::max(width, cell.size());
-    return width;
-  }
-};
-
 /// Columns of a terminal's line that the table takes at most.
 constexpr std::size_t kTableWidth = 100;
 
@@ -108,11 +94,8 @@ constexpr std::size_t kTableWidth = 100;
 /// fit; the files of conflicts have it.
 std::vector<TextColumn> columns_of(const ConflictFile& file,
                                    const std::vector<const Conflict*>& rows) {
-  std::vector<TextColumn> columns;
-  const auto add = [&](const char* title, const auto& cell) {
-    TextColumn& column = columns.emplace_back(TextColumn{title, {}});
-    for (const Conflict* c : rows) column.cells.push_back(cell(*c));
-  };
+  TextColumns<Conflict> table(rows);
+  const auto add = [&](const char* title, const auto& cell) { table.add(title, 0, cell); };
   const Conflicts& all = file.conflicts;
   const double metre = file.metres_per_unit();
   add("id", [](const Conflict& c) { return std::to_string(c.id); });
@@ -125,10 +108,10 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
       return key.empty() ? "-" : key;
     });
   }
-  add("chainage", [](const Conflict& c) { return range_cell(c.chainage_from, c.chainage_to); });
+  add("chainage", [](const Conflict& c) { return range_text(c.chainage_from, c.chainage_to); });
   if (rows.front()->station_from) {
     add("station (m)", [](const Conflict& c) {
-      return c.station_from && c.station_to ? range_cell(*c.station_from, *c.station_to) : "-";
+      return c.station_from && c.station_to ? range_text(*c.station_from, *c.station_to) : "-";
     });
   }
   add("obstacle", [](const Conflict& c) { return length_cell(c.obstacle_chainage, 2); });
@@ -159,12 +142,12 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
     add("classified", class_cell);
   }
   std::size_t width = 0;
-  for (const TextColumn& column : columns) width += column.width() + 2;
+  for (const TextColumn& column : table.columns) width += column.width() + 2;
   add("centroid", [](const Conflict& c) {
     return fmt::format("{:.3f} {:.3f} {:.3f}", c.centroid.x, c.centroid.y, c.centroid.z);
   });
-  if (width + columns.back().width() > kTableWidth) columns.pop_back();
-  return columns;
+  if (width + table.columns.back().width() > kTableWidth) table.columns.pop_back();
+  return table.columns;
 }
 
 /// A clause with the stations of a group, empty without stations.
@@ -242,19 +225,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   const std::vector<const Conflict*> rows = worst_first(conflicts, most);
   if (rows.size() < conflicts.listed.size()) text += fmt::format("the worst {}, ", rows.size());
   text += fmt::format("lengths in {}:\n", symbol_of(file.unit()));
-  const std::vector<TextColumn> columns = columns_of(file, rows);
-  const auto add_line = [&](const auto& cell) {
-    std::string line;
-    for (const TextColumn& column : columns) {
-      line += fmt::format("{}{:>{}}", line.empty() ? "" : "  ", cell(column), column.width());
-    }
-    text += line + "\n";
-  };
-  add_line([](const TextColumn& column) { return column.title; });
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    add_line([i](const TextColumn& column) { return column.cells[i]; });
-  }
-  return text;
+  return text + table_text(columns_of(file, rows));
 }
 
 /// A line about a row of the ledger that needs one, because its status or a reason says more than
@@ -294,31 +265,6 @@ std::string accepted_text(const Ledger& ledger, Verdict verdict) {
   return (stays ? "The verdict stays conflict. " : "") + ledger_sentence(ledger);
 }
 
-/// An output that does not exist yet.
-struct ConflictOutput {
-  ConflictOutput(const std::filesystem::path& path, bool overwrite)
-      : format(conflict_format_of(path)), pending(path, overwrite) {}
-
-  ConflictFormat format;
-  PendingFile pending;
-};
-
-using Outputs = std::vector<std::unique_ptr<ConflictOutput>>;
-
-Outputs open_outputs(const ConflictsCommand& options) {
-  Outputs out;
-  for (const std::filesystem::path& path : options.outputs) conflict_format_of(path);
-  std::vector<std::filesystem::path> inputs{options.result, options.trajectory, options.model,
-                                            options.ledger.options.table,
-                                            options.ledger.environment};
-  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
-  for (const std::filesystem::path& path : options.outputs) {
-    refuse_overwriting(path, inputs);
-    out.push_back(std::make_unique<ConflictOutput>(path, options.force));
-  }
-  return out;
-}
-
 /// The number of places of a surface that a picture shows.
 constexpr double kDrawnPlaces = 20'000;
 
@@ -329,32 +275,10 @@ std::vector<Vec3> drawn(const Model& model) {
 }
 
 /// What the pictures of conflicts show besides them: the model, or the bodies of the vehicle.
-struct SeenFrom {
-  Model model;
-  std::vector<Body> bodies;
-
-  std::vector<std::vector<Vec3>> drawn_models() const {
-    std::vector<std::vector<Vec3>> out;
-    if (!model.empty()) out.push_back(drawn(model));
-    for (const Body& body : bodies) out.push_back(drawn(body.model));
-    return out;
-  }
-};
-
-SeenFrom read_seen_from(ConflictsCommand& options, const std::vector<Pose>& poses,
-                        const Result& result) {
-  SeenFrom out;
-  if (!options.model.empty()) {
-    out.model = read_model_of(options.model, options.model_options, result);
-  }
-  if (!options.vehicle.empty()) {
-    std::vector<Message> messages;
-    out.bodies =
-        read_bodies_of(options.vehicle, options.model_options, options, poses, result, messages);
-    for (const Message& message : messages) {
-      if (message.severity == Message::Severity::kWarning) log_message(message);
-    }
-  }
+std::vector<std::vector<Vec3>> drawn_models(const OpenedResult& opened) {
+  std::vector<std::vector<Vec3>> out;
+  if (!opened.model.empty()) out.push_back(drawn(opened.model));
+  for (const Body& body : opened.bodies) out.push_back(drawn(body.model));
   return out;
 }
 
@@ -394,12 +318,9 @@ std::string full_date(const std::string& text) {
 void add_sides(CLI::App& command, ConflictsCommand& options) {
   add_axis_options(command, options);
   CLI::Option* model =
-      command
-          .add_option(
-              "--model", options.model,
-              "The model of the run: for lateral shifts, the sides of older results, and BCF "
-              "pictures")
-          ->type_name("FILE");
+      add_file(command, "--model", options.model,
+               "The model of the run: for lateral shifts, the sides of older results, and BCF "
+               "pictures");
   add_vehicle_option(
       command, options.vehicle,
       "The vehicle of several bodies of the run: for sides, lateral shifts and BCF pictures",
@@ -410,27 +331,16 @@ void add_sides(CLI::App& command, ConflictsCommand& options) {
 }  // namespace
 
 ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
-  const Outputs outputs = open_outputs(options);
-  check_is_trajectory(options.trajectory);
-  const Result result(options.result);
+  NewOutputs<ConflictFormat> outputs(
+      options, conflict_format_of,
+      options.with({options.ledger.options.table, options.ledger.environment}));
+  OpenedResult opened(options, options);
+  const Result& result = opened.result;
+  const std::vector<Pose>& poses = opened.poses;
   repeat_warnings(result.reader());
-  check_kind_of_model(result, options.model, options.vehicle);
-  check_axes(result, options);
-  const double unit = options.lengths.convert_for(options.result, result.reader().header());
-  options.trajectory_options.environment_unit = unit;
-  options.model_options.environment_unit = unit;
-  ConsoleProgress progress;
-  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  options.find.stop = &stop_flag();
-  PoseLabels labels;
-  const std::vector<Pose> poses =
-      read_poses(options.trajectory, options.trajectory_options, result, &labels);
-  options.find.station = labels.station;
-  const SeenFrom from = read_seen_from(options, poses, result);
-  options.find.bodies = from.bodies;
-  if (!from.model.empty()) options.find.model = &from.model;
-  const bool has_pictures = std::ranges::any_of(
-      outputs, [](const auto& output) { return output->format == ConflictFormat::kBcf; });
+  opened.read();
+  opened.log_messages();
+  const bool has_pictures = outputs.has(ConflictFormat::kBcf);
   std::vector<std::uint32_t> conflict_of, conflict_of_near;
   const bool has_ledger = options.ledger.is_given();
   const bool wants_rows = has_pictures || has_ledger || found != nullptr;
@@ -439,7 +349,7 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
                      has_ledger ? &conflict_of_near : nullptr);
   ConflictPictures pictures;
   if (has_pictures) {
-    pictures = {conflict_points(result.reader(), conflicts, conflict_of), from.drawn_models()};
+    pictures = {conflict_points(result.reader(), conflicts, conflict_of), drawn_models(opened)};
   }
   const Answer answer = counted_answer(result.reader());
   ConflictFile file{conflicts, options.find, result.reader().header(), answer, poses,
@@ -451,17 +361,16 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
         options.ledger, {result, conflicts, conflict_of, conflict_of_near, poses}, options.find);
     file.ledger = &*ledger;
   }
-  for (const auto& output : outputs) {
-    write_conflicts(file, pictures, output->format, output->pending.partial());
-  }
-  for (const auto& output : outputs) output->pending.publish();
+  outputs.write([&](ConflictFormat format, const std::filesystem::path& path) {
+    write_conflicts(file, pictures, format, path);
+  });
   for (const Message& warning : file.warnings) log_message(warning);
   tell_of_unknown_sides(options, result, conflicts);
   ConflictsOutcome outcome{
       conflict_text(file, options.show),
       worst_text(file),
       "{\n" + member_lines(summary_of(file)) + "\n}\n",
-      verdict_to_repeat(result.reader(), {{.station = labels.station}, chainage_of(poses)},
+      verdict_to_repeat(result.reader(), {{.station = opened.labels.station}, chainage_of(poses)},
                         symbol_of(file.unit())),
       ledger ? accepted_text(*ledger, answer.verdict()) : "",
       ledger ? ledger->outside.verdict : answer.verdict()};
@@ -474,16 +383,9 @@ ConflictsOutcome perform(ConflictsCommand& options, FoundConflicts* found) {
 }
 
 void add_options(CLI::App& command, ConflictsCommand& options) {
-  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--trajectory", options.trajectory, "The trajectory of the run")
-      ->type_name("FILE")
-      ->required();
-  command
-      .add_option("-o,--output", options.outputs,
-                  "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times")
-      ->type_name("FILE");
+  add_result_inputs(command, options);
+  add_file(command, "-o,--output", options.outputs,
+           "Output: .csv, .json, .geojson, .gpkg or .bcf; may be given several times");
   add_conflict_options(command, options);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
   add_sides(command, options);
@@ -491,11 +393,9 @@ void add_options(CLI::App& command, ConflictsCommand& options) {
                    "Print a table of so many conflicts");
   add_ledger_options(command, options.ledger, options.lengths);
   add_update_option(command, options.ledger, options.lengths);
-  command
-      .add_option("--env", options.ledger.environment,
-                  "With --ledger: the store that was searched; without it and the model, no row is "
-                  "gone")
-      ->type_name("FILE");
+  add_file(command, "--env", options.ledger.environment,
+           "With --ledger: the store that was searched; without it and the model, no row is "
+           "gone");
   command
       .add_option_function<std::string>(
           "--date",

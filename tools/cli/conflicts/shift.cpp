@@ -40,57 +40,13 @@ namespace {
 
 /// The options of `clearway shift`.
 struct ShiftCommand : ConflictCommand {
-  std::filesystem::path result, environment, trajectory, model, vehicle;
-  std::vector<std::filesystem::path> outputs;
-  ModelOptions model_options;
+  std::filesystem::path environment;
   std::optional<std::array<double, 2>> lateral;
   double step = ShiftOptions{}.step;
   SessionOptions machine;
-  std::uint64_t show = 20;
-  bool force = false;
-  bool json = false;
 };
 
-/// An output that does not exist yet.
-struct ShiftOutput {
-  ShiftOutput(const std::filesystem::path& path, bool overwrite)
-      : format(shift_format_of(path)), pending(path, overwrite) {}
-
-  ShiftFormat format;
-  PendingFile pending;
-};
-
-std::vector<std::unique_ptr<ShiftOutput>> open_outputs(const ShiftCommand& options) {
-  std::vector<std::unique_ptr<ShiftOutput>> out;
-  for (const std::filesystem::path& path : options.outputs) shift_format_of(path);
-  std::vector<std::filesystem::path> inputs{options.result, options.environment, options.trajectory,
-                                            options.model};
-  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
-  for (const std::filesystem::path& path : options.outputs) {
-    refuse_overwriting(path, inputs);
-    out.push_back(std::make_unique<ShiftOutput>(path, options.force));
-  }
-  return out;
-}
-
-/// The question of the result, from the files that were searched.
-Query read_query_again(ShiftCommand& options, const Result& result, PoseLabels& labels) {
-  Query query({}, {}, result.parameters());
-  query.poses = read_poses(options.trajectory, options.trajectory_options, result, &labels);
-  if (options.vehicle.empty()) {
-    query.model = read_model_of(options.model, options.model_options, result);
-    return query;
-  }
-  std::vector<Message> messages;
-  query.bodies = read_bodies_of(options.vehicle, options.model_options, options, query.poses,
-                                result, messages);
-  for (const Message& message : messages) {
-    if (message.severity == Message::Severity::kWarning) log_message(message);
-  }
-  return query;
-}
-
-ShiftOptions shift_options_of(const ShiftCommand& command, const PoseLabels& labels) {
+ShiftOptions shift_options_of(const ShiftCommand& command) {
   ShiftOptions out;
   if (command.lateral) {
     out.lateral_from = (*command.lateral)[0];
@@ -100,7 +56,7 @@ ShiftOptions shift_options_of(const ShiftCommand& command, const PoseLabels& lab
   out.forward = command.find.forward;
   out.up = command.find.up;
   out.chainage_start = command.find.chainage_start;
-  out.station = labels.station;
+  out.station = command.find.station;
   out.progress = command.find.progress;
   out.stop = command.find.stop;
   return out;
@@ -108,7 +64,7 @@ ShiftOptions shift_options_of(const ShiftCommand& command, const PoseLabels& lab
 
 /// How far was looked on either side, for example "of up to 2 m" or "between 1 m to the right and 3
 /// m to the left".
-std::string range_text(const ShiftTable& table, const std::string& unit) {
+std::string limits_text(const ShiftTable& table, const std::string& unit) {
   const std::string left = format_length(table.lateral_to) + " " + unit;
   const std::string right = format_length(-table.lateral_from) + " " + unit;
   if (left == right) return "of up to " + left;
@@ -117,7 +73,7 @@ std::string range_text(const ShiftTable& table, const std::string& unit) {
 
 std::string shift_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
   if (!row.shift) {
-    const std::string none = "no shift " + range_text(table, unit) + " ";
+    const std::string none = "no shift " + limits_text(table, unit) + " ";
     return row.warned_of.empty()
                ? none + "frees it"
                : none + "is known to free it, because " + doubt_words(row.warned_of);
@@ -132,22 +88,6 @@ std::string shift_text(const StretchShift& row, const ShiftTable& table, const s
          (row.warned_of.size() == 1 ? "warning " : "warnings ") + codes;
 }
 
-std::string row_text(const StretchShift& row, const ShiftTable& table, const std::string& unit) {
-  std::string text =
-      fmt::format("{:>8}  {:>19}", row.conflict,
-                  fmt::format("{:.2f} - {:.2f}", row.chainage_from, row.chainage_to));
-  if (row.station_from && row.station_to) {
-    text +=
-        fmt::format("  {:>23}", fmt::format("{:.2f} - {:.2f}", *row.station_from, *row.station_to));
-  }
-  text += fmt::format("  {:>13}  {:>8}  ", fmt::format("{} - {}", row.first_pose, row.last_pose),
-                      row.searches);
-  return text + shift_text(row, table, unit) +
-         (row.least_distance ? fmt::format(", with {:.3f} {} of room", *row.least_distance, unit)
-                             : "") +
-         "\n";
-}
-
 /// A line about the groups that are too small to be conflicts; none where there are none.
 std::string small_text(const ShiftFile& file) {
   const Conflicts& found = file.conflicts;
@@ -159,23 +99,39 @@ std::string small_text(const ShiftFile& file) {
          (found.small_groups == 1 ? "it" : "them") + "\n";
 }
 
-std::string table_text(const ShiftFile& file, std::size_t most) {
+std::string text_of(const ShiftFile& file, std::size_t most) {
   const ShiftTable& table = file.table;
   std::string text = "the whole path: " + shift_text(table.path, table, file.unit) + "\n";
   const auto freed = std::ranges::count_if(
       table.conflicts, [](const StretchShift& row) { return row.shift.has_value(); });
-  text += counted(table.conflicts.size(), "conflict") +
-          fmt::format(", of which {} can be freed by a shift {}; {}\n", freed,
-                      range_text(table, file.unit), counted(table.searches, "search", "searches")) +
-          small_text(file);
+  text +=
+      counted(table.conflicts.size(), "conflict") +
+      fmt::format(", of which {} can be freed by a shift {}; {}\n", freed,
+                  limits_text(table, file.unit), counted(table.searches, "search", "searches")) +
+      small_text(file);
   const std::size_t shown = std::min(most, table.conflicts.size());
   if (shown == 0) return text;
-  text += fmt::format("{:>8}  {:>19}", "conflict", "chainage (" + file.unit + ")");
-  if (table.conflicts.front().station_from) text += fmt::format("  {:>23}", "station (m)");
-  text += fmt::format("  {:>13}  {:>8}  shift\n", "poses", "searches");
-  for (const StretchShift& row : std::span(table.conflicts).first(shown)) {
-    text += row_text(row, table, file.unit);
+  std::vector<const StretchShift*> rows;
+  for (std::size_t i = 0; i < shown; ++i) rows.push_back(&table.conflicts[i]);
+  TextColumns<StretchShift> of(rows);
+  of.add("conflict", 8, [](const StretchShift& row) { return std::to_string(row.conflict); });
+  of.add("chainage (" + file.unit + ")", 19,
+         [](const StretchShift& row) { return range_text(row.chainage_from, row.chainage_to); });
+  if (table.conflicts.front().station_from) {
+    of.add("station (m)", 23,
+           [](const StretchShift& row) { return range_text(*row.station_from, *row.station_to); });
   }
+  of.add("poses", 13, [](const StretchShift& row) {
+    return fmt::format("{} - {}", row.first_pose, row.last_pose);
+  });
+  of.add("searches", 8, [](const StretchShift& row) { return std::to_string(row.searches); });
+  of.add("shift", 0, [&](const StretchShift& row) {
+      return shift_text(row, table, file.unit) +
+             (row.least_distance
+                  ? fmt::format(", with {:.3f} {} of room", *row.least_distance, file.unit)
+                  : "");
+    }).to_left = true;
+  text += table_text(of.columns);
   if (shown < table.conflicts.size()) {
     text += "and " + counted(table.conflicts.size() - shown, "conflict") +
             " more, which --show or an output shows\n";
@@ -186,50 +142,48 @@ std::string table_text(const ShiftFile& file, std::size_t most) {
 /// The table in words, or in JSON.
 std::string perform(ShiftCommand& options) {
   if (options.model.empty() && options.vehicle.empty()) throw CLI::RequiredError("--model");
-  const auto outputs = open_outputs(options);
-  check_is_trajectory(options.trajectory);
-  const Result result(options.result);
+  NewOutputs<ShiftFormat> outputs(options, shift_format_of, options.with({options.environment}));
+  OpenedResult opened(options, options);
+  const Result& result = opened.result;
   repeat_warnings(result.reader());
-  check_kind_of_model(result, options.model, options.vehicle);
-  check_axes(result, options);
   check_is_store(options.environment);
   options.machine.threads = options.find.threads;
   options.machine.memory_bytes = options.find.memory_bytes;
   const Session session(options.environment, options.machine);
-  if (const auto warning = options.lengths.convert_for(session.store())) log_message(*warning);
-  set_environment_unit(session.store(), options.trajectory_options, options.model_options);
-  ConsoleProgress progress;
-  options.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  options.find.stop = &stop_flag();
-  PoseLabels labels;
-  const Query query = read_query_again(options, result, labels);
-  options.find.station = labels.station;
-  options.find.bodies = query.bodies;
+  opened.read(&session.store());
+  opened.log_messages();
+  Query query({}, {}, result.parameters());
+  query.poses = std::move(opened.poses);
+  query.model = std::move(opened.model);
+  query.bodies = std::move(opened.bodies);
+  options.find.model = nullptr;  // own shifts are not asked for
   const Conflicts conflicts = find_conflicts(result, query.poses, options.find);
   const ShiftTable table =
-      find_shifts(session, result, query, conflicts.listed, shift_options_of(options, labels));
+      find_shifts(session, result, query, conflicts.listed, shift_options_of(options));
   const std::string unit = symbol_of_unit(session.store().length_unit());
   const ShiftFile file{table, conflicts, options.find, result.reader(), unit};
-  for (const auto& output : outputs) {
-    write_shifts(file, output->format, output->pending.partial());
-  }
-  for (const auto& output : outputs) output->pending.publish();
+  outputs.write([&](ShiftFormat format, const std::filesystem::path& path) {
+    write_shifts(file, format, path);
+  });
   spdlog::info("{} in {:.2f} s", counted(table.searches, "search", "searches"), table.seconds);
   spdlog::info(
       "what was not scanned counts as free; clearway run --seen along the shifted path shows "
       "whether it was");
-  return options.json ? json_of(file) : table_text(file, options.show);
+  return options.json ? json_of(file) : text_of(file, options.show);
 }
 
 void add_inputs(CLI::App& command, ShiftCommand& options) {
   const GroupScope group(command, OptionGroup::kInputs);
-  add_searched_inputs(command, "Result of clearway run with --first-pose", options.result,
-                      options.environment, options.model, options.vehicle, options.trajectory);
-  command
-      .add_option("-o,--output", options.outputs,
-                  "Output: .csv, or .json, which clearway report --shifts takes; may be given "
-                  "several times")
-      ->type_name("FILE");
+  add_file(command, "RESULT", options.result, "Result of clearway run with --first-pose")
+      ->required();
+  add_file(command, "--env", options.environment, "The store that was searched")->required();
+  CLI::Option* model = add_file(command, "--model", options.model, "The model that was moved");
+  add_vehicle_option(command, options.vehicle,
+                     "Instead of --model: the vehicle of several bodies that was moved", model);
+  add_file(command, "--trajectory", options.trajectory, kTrajectoryHelp)->required();
+  add_file(command, "-o,--output", options.outputs,
+           "Output: .csv, or .json, which clearway report --shifts takes; may be given "
+           "several times");
 }
 
 void add_options(CLI::App& command, ShiftCommand& options) {

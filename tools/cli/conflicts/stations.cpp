@@ -37,32 +37,10 @@
 namespace clearway::tool {
 namespace {
 
-/// An output that does not exist yet.
-struct StationOutput {
-  StationOutput(const std::filesystem::path& path, bool overwrite)
-      : format(station_format_of(path)), pending(path, overwrite) {}
-
-  StationFormat format;
-  PendingFile pending;
-};
-
-std::vector<std::unique_ptr<StationOutput>> open_outputs(const StationsCommand& options) {
-  std::vector<std::unique_ptr<StationOutput>> out;
-  for (const std::filesystem::path& path : options.outputs) station_format_of(path);
-  std::vector<std::filesystem::path> inputs{options.result, options.trajectory};
-  if (!options.vehicle.empty()) inputs = vehicle_inputs(options.vehicle, std::move(inputs));
-  for (const std::filesystem::path& path : options.outputs) {
-    refuse_overwriting(path, inputs);
-    out.push_back(std::make_unique<StationOutput>(path, options.force));
-  }
-  return out;
-}
-
 /// A length to a millimetre; values that round to 0 have no sign.
-std::string cell(const std::optional<double>& metres, int width = 8) {
-  if (!metres) return fmt::format("  {:>{}}", "-", width);
-  const double shown = std::abs(*metres) < 0.0005 ? 0 : *metres;
-  return fmt::format("  {:>{}.3f}", shown, width);
+std::string cell(const std::optional<double>& metres) {
+  if (!metres) return "-";
+  return fmt::format("{:.3f}", std::abs(*metres) < 0.0005 ? 0 : *metres);
 }
 
 std::string cell(const std::optional<FoundPlace>& place) {
@@ -71,12 +49,10 @@ std::string cell(const std::optional<FoundPlace>& place) {
 
 /// The least distance, or below or above what it is, where that is all that is known.
 std::string least_cell(const StationRow& row) {
-  if (row.least_below) return fmt::format("  {:>8}", "< " + format_brief(*row.least_below));
-  if (row.least_above) return fmt::format("  {:>8}", "> " + format_brief(*row.least_above));
+  if (row.least_below) return "< " + format_brief(*row.least_below);
+  if (row.least_above) return "> " + format_brief(*row.least_above);
   return cell(row.least);
 }
-
-std::string range_text(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }
 
 /// Why a row is not clear, in a few words.
 std::string why(const StationRow& row) {
@@ -101,18 +77,6 @@ Overthrow greatest(const StationRow& row) {
   return out;
 }
 
-std::string row_text(const StationRow& row) {
-  std::string text = fmt::format("{:>19}", range_text(row.chainage_from, row.chainage_to));
-  if (row.station_from) {
-    text += fmt::format("  {:>23}", range_text(*row.station_from, *row.station_to));
-  }
-  text += least_cell(row);
-  for (const auto* place : {&row.left, &row.right, &row.above}) text += cell(*place);
-  const Overthrow overthrow = greatest(row);
-  text += cell(overthrow.end, 13) + cell(overthrow.middle, 16);
-  return text + "  " + name_of(row.verdict) + why(row) + "\n";
-}
-
 std::string totals_text(const StationTable& table, const StationsCommand& options, double length,
                         const std::string& unit) {
   std::array<std::uint64_t, 4> of{};
@@ -127,18 +91,30 @@ std::string totals_text(const StationTable& table, const StationsCommand& option
 }
 
 /// The first `most` rows as a table.
-std::string table_text(const StationTable& table, std::size_t most, const std::string& unit) {
+std::string rows_text(const StationTable& table, std::size_t most, const std::string& unit) {
   if (table.rows.empty() || most == 0) return "";
-  std::string text = fmt::format("{:>19}", "chainage (" + unit + ")");
-  if (table.rows.front().station_from) text += fmt::format("  {:>23}", "station (m)");
-  for (const char* name : {"least", "left", "right", "above"}) {
-    text += fmt::format("  {:>8}", name);
+  std::vector<const StationRow*> rows;
+  for (std::size_t i = 0; i < std::min(most, table.rows.size()); ++i)
+    rows.push_back(&table.rows[i]);
+  TextColumns<StationRow> of(rows);
+  of.add("chainage (" + unit + ")", 19,
+         [](const StationRow& row) { return range_text(row.chainage_from, row.chainage_to); });
+  if (table.rows.front().station_from) {
+    of.add("station (m)", 23,
+           [](const StationRow& row) { return range_text(*row.station_from, *row.station_to); });
   }
-  text += "  overthrow end  overthrow middle  verdict\n";
-  const std::size_t shown = std::min(most, table.rows.size());
-  for (std::size_t i = 0; i < shown; ++i) text += row_text(table.rows[i]);
-  if (shown < table.rows.size()) {
-    text += "and " + counted(table.rows.size() - shown, "stretch", "stretches") +
+  of.add("least", 8, least_cell);
+  of.add("left", 8, [](const StationRow& row) { return cell(row.left); });
+  of.add("right", 8, [](const StationRow& row) { return cell(row.right); });
+  of.add("above", 8, [](const StationRow& row) { return cell(row.above); });
+  of.add("overthrow end", 13, [](const StationRow& row) { return cell(greatest(row).end); });
+  of.add("overthrow middle", 16, [](const StationRow& row) { return cell(greatest(row).middle); });
+  of.add("verdict", 0, [](const StationRow& row) {
+      return name_of(row.verdict) + why(row);
+    }).to_left = true;
+  std::string text = table_text(of.columns);
+  if (rows.size() < table.rows.size()) {
+    text += "and " + counted(table.rows.size() - rows.size(), "stretch", "stretches") +
             " more, which --show or an output shows\n";
   }
   return text;
@@ -151,27 +127,20 @@ StationOptions options_of(const StationsCommand& command) {
   out.forward = command.find.forward;
   out.up = command.find.up;
   out.threads = command.find.threads;
+  out.station = command.find.station;
+  out.bodies = command.find.bodies;
   out.progress = command.find.progress;
   out.stop = command.find.stop;
   return out;
 }
 
 void add_inputs(CLI::App& command, StationsCommand& options) {
-  command.add_option("RESULT", options.result, "Result of clearway run with --first-pose")
-      ->type_name("FILE")
-      ->required();
-  command.add_option("--trajectory", options.trajectory, "The trajectory of the run")
-      ->type_name("FILE")
-      ->required();
-  command
-      .add_option("-o,--output", options.outputs,
-                  "Output: .csv or .json; may be given several times")
-      ->type_name("FILE");
-  command
-      .add_option("--vehicle", options.vehicle,
-                  "The vehicle of several bodies of the run: for sides and overthrow, and to know "
-                  "where it was searched")
-      ->type_name("FILE");
+  add_result_inputs(command, options);
+  add_file(command, "-o,--output", options.outputs,
+           "Output: .csv or .json; may be given several times");
+  add_file(command, "--vehicle", options.vehicle,
+           "The vehicle of several bodies of the run: for sides and overthrow, and to know "
+           "where it was searched");
   add_model_options(command, options.model_options, options.lengths);
   add_trajectory_options(command, options.trajectory_options, options.lengths);
 }
@@ -179,47 +148,25 @@ void add_inputs(CLI::App& command, StationsCommand& options) {
 }  // namespace
 
 StationsOutcome perform(StationsCommand& command) {
-  const auto outputs = open_outputs(command);
-  check_is_trajectory(command.trajectory);
-  const Result result(command.result);
+  NewOutputs<StationFormat> outputs(command, station_format_of, command.with({}));
+  OpenedResult opened(command, command);
+  const Result& result = opened.result;
   repeat_warnings(result.reader());
-  if (!command.vehicle.empty() && result.bodies().empty()) {
-    throw InputError(command.result.string() + ": is of one model; leave out --vehicle");
-  }
-  check_axes(result, command);
+  opened.read();
+  opened.log_messages();
   const ResultHeader& header = result.reader().header();
-  const double metre = command.lengths.convert_for(command.result, header);
-  command.trajectory_options.environment_unit = metre;
-  command.model_options.environment_unit = metre;
-  ConsoleProgress progress;
-  command.find.progress = [&progress](const ProgressUpdate& update) { progress.update(update); };
-  command.find.stop = &stop_flag();
-  PoseLabels labels;
-  const std::vector<Pose> poses =
-      read_poses(command.trajectory, command.trajectory_options, result, &labels);
+  const std::vector<Pose>& poses = opened.poses;
   StationOptions options = options_of(command);
-  options.station = labels.station;
-  std::vector<Body> bodies;
-  if (!command.vehicle.empty()) {
-    std::vector<Message> messages;
-    bodies =
-        read_bodies_of(command.vehicle, command.model_options, command, poses, result, messages);
-    for (const Message& message : messages) {
-      if (message.severity == Message::Severity::kWarning) log_message(message);
-    }
-  }
-  options.bodies = bodies;
   const StationTable table = station_table(result, poses, options);
   const Answer answer = counted_answer(result.reader());
   const StationFile file{table, options, header, answer};
-  for (const auto& output : outputs) {
-    write_stations(file, output->format, output->pending.partial());
-  }
-  for (const auto& output : outputs) output->pending.publish();
+  outputs.write([&](StationFormat format, const std::filesystem::path& path) {
+    write_stations(file, format, path);
+  });
   for (const Message& warning : table.warnings) log_message(warning);
   const std::string unit = symbol_of(unit_of(header));
   return {
-      totals_text(table, command, path_length(poses), unit) + table_text(table, command.show, unit),
+      totals_text(table, command, path_length(poses), unit) + rows_text(table, command.show, unit),
       "{\n" + member_lines(summary_of(file)) + "\n}\n"};
 }
 

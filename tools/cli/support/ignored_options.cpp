@@ -105,9 +105,7 @@ nlohmann::ordered_json ignored_json(const Answer& answer) {
   }
   for (std::size_t i = 0; i < query.ignore_boxes.size(); ++i) {
     const Box& box = query.ignore_boxes[i];
-    boxes.push_back({{"lo", {box.lo.x, box.lo.y, box.lo.z}},
-                     {"hi", {box.hi.x, box.hi.y, box.hi.z}},
-                     {"points", counts.in_boxes[i]}});
+    boxes.push_back({{"lo", box.lo}, {"hi", box.hi}, {"points", counts.in_boxes[i]}});
   }
   return {{"points", counts.points},
           {"colliding", answer.ignored_colliding},

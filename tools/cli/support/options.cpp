@@ -371,6 +371,16 @@ CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
       ->type_name("ANGLE");
 }
 
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::filesystem::path& file,
+                      const std::string& description) {
+  return command.add_option(names, file, description)->type_name("FILE");
+}
+
+CLI::Option* add_file(CLI::App& command, const std::string& names,
+                      std::vector<std::filesystem::path>& files, const std::string& description) {
+  return command.add_option(names, files, description)->type_name("FILE");
+}
+
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,
                               std::uint64_t least, std::uint64_t most,
                               const std::string& description) {

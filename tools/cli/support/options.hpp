@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "clearway/model.hpp"
 #include "clearway/report.hpp"
@@ -67,6 +69,12 @@ CLI::Option* add_size_option(CLI::App& command, const std::string& name, std::ui
 /// Adds an option for an angle such as "0.002", in radians, or "0.1deg".
 CLI::Option* add_angle_option(CLI::App& command, const std::string& name,
                               std::optional<double>& angle, const std::string& description);
+
+/// Adds an option, or an argument, that takes the name of a file, or of several.
+CLI::Option* add_file(CLI::App& command, const std::string& names, std::filesystem::path& file,
+                      const std::string& description);
+CLI::Option* add_file(CLI::App& command, const std::string& names,
+                      std::vector<std::filesystem::path>& files, const std::string& description);
 
 /// Adds an option that takes a whole number from `least` to `most`.
 CLI::Option* add_count_option(CLI::App& command, const std::string& name, std::uint64_t& count,

@@ -38,9 +38,7 @@ Json corridor_json(const StoreCorridor& near) {
           {"points_unread", near.unread},
           {"bytes_unread", near.unread_bytes},
           {"files_passed_over", near.passed_over},
-          {"whole",
-           {{"lo", {near.whole.lo.x, near.whole.lo.y, near.whole.lo.z}},
-            {"hi", {near.whole.hi.x, near.whole.hi.y, near.whole.hi.z}}}}};
+          {"whole", near.whole}};
 }
 
 Json origins_json(const StoreOrigins& origins) {

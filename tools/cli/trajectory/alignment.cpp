@@ -177,18 +177,14 @@ void add_trajectory_alignment(CLI::App& trajectory) {
   const auto options = std::make_shared<AlignmentCommand>();
   CLI::App* command = trajectory.add_subcommand(
       "alignment", "Write poses in metres along an alignment of a LandXML file");
-  command->add_option("IN", options->input, "The LandXML 1.2 file")->type_name("FILE")->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "The poses: CSV with the station, the position and the rotation of each")
-      ->type_name("FILE")
+  add_file(*command, "IN", options->input, "The LandXML 1.2 file")->required();
+  add_file(*command, "-o,--output", options->output,
+           "The poses: CSV with the station, the position and the rotation of each")
       ->required();
   add_way(*command, *options);
   add_track(*command, *options);
-  command
-      ->add_option("--env", options->environment,
-                   "A store: warns where its coordinate system is another than that of the file")
-      ->type_name("FILE");
+  add_file(*command, "--env", options->environment,
+           "A store: warns where its coordinate system is another than that of the file");
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "One JSON object on standard output");
   command->footer("Example: clearway trajectory alignment track.xml -o path.csv --to 1200");

@@ -262,24 +262,17 @@ void write_changed(ChangeCommand& options, const Change& change) {
 /// Adds the options that all changes of a path have but for how much it is changed. Returns that of
 /// the model.
 CLI::Option* add_files(CLI::App& command, ChangeCommand& options) {
-  command.add_option("IN", options.input, kTrajectoryHelp)->type_name("FILE")->required();
-  command
-      .add_option(
-          "-o,--output", options.output,
-          "The new trajectory: a table with the unit and the stations of the path or, where "
-          "it names neither, 16 numbers a line, a row-major 4x4 matrix")
-      ->type_name("FILE")
+  add_file(command, "IN", options.input, kTrajectoryHelp)->required();
+  add_file(command, "-o,--output", options.output,
+           "The new trajectory: a table with the unit and the stations of the path or, where "
+           "it names neither, 16 numbers a line, a row-major 4x4 matrix")
       ->required();
   CLI::Option* model =
-      command
-          .add_option("--model", options.model,
-                      "The model, as clearway run reads it, or the file of a vehicle of several "
-                      "bodies; their bounding boxes are what moves")
-          ->type_name("FILE");
-  command
-      .add_option("--env", options.environment,
-                  "The store: says the unit of lengths, and which foot a ft is, and gives the CRS")
-      ->type_name("FILE");
+      add_file(command, "--model", options.model,
+               "The model, as clearway run reads it, or the file of a vehicle of several "
+               "bodies; their bounding boxes are what moves");
+  add_file(command, "--env", options.environment,
+           "The store: says the unit of lengths, and which foot a ft is, and gives the CRS");
   return model;
 }
 

@@ -77,10 +77,6 @@ ordered_json axis_json(const BodyAxis& axis) {
   return {{"axis", axis_name(axis)}, {"mean_cosine", axis.cosine}};
 }
 
-ordered_json box_json(const Box& box) {
-  return {{"lo", {box.lo.x, box.lo.y, box.lo.z}}, {"hi", {box.hi.x, box.hi.y, box.hi.z}}};
-}
-
 }  // namespace
 
 ordered_json remarks_json(const std::vector<Message>& remarks, Message::Severity severity) {
@@ -103,7 +99,7 @@ ordered_json json_of(const Description& what) {
   if (s.poses > 0) {
     out["first_pose"] = labelled_json(file, 0);
     out["last_pose"] = labelled_json(file, file.poses.size() - 1);
-    out["bounds"] = box_json(s.box);
+    out["bounds"] = s.box;
   }
   out["length"] = s.length;
   const std::vector<double>& times = file.labels.time;
@@ -117,7 +113,7 @@ ordered_json json_of(const Description& what) {
   out["up"] = axis_json(s.up);
   out["forward"] = axis_json(s.forward);
   if (what.scan) {
-    out["environment"] = {{"bounds", box_json(*what.scan)},
+    out["environment"] = {{"bounds", *what.scan},
                           {"distance", what.overlap.distance},
                           {"poses_inside", what.overlap.inside}};
   }

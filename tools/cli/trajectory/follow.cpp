@@ -231,20 +231,15 @@ void add_trajectory_follow(CLI::App& trajectory) {
   CLI::App* command = trajectory.add_subcommand(
       "follow",
       "Write the poses of a body that follows the path, or of one that is towed along it");
-  command->add_option("IN", options->input, kTrajectoryHelp)->type_name("FILE")->required();
-  command
-      ->add_option(
-          "-o,--output", options->output,
-          "The body's poses: a table with the unit and the stations of the path or, where it "
-          "names neither, 16 numbers a line, a row-major 4x4 matrix; a name that ends in .csv gets "
-          "a table, whose column path_pose says which pose of the path each belongs to")
-      ->type_name("FILE")
+  add_file(*command, "IN", options->input, kTrajectoryHelp)->required();
+  add_file(
+      *command, "-o,--output", options->output,
+      "The body's poses: a table with the unit and the stations of the path or, where it "
+      "names neither, 16 numbers a line, a row-major 4x4 matrix; a name that ends in .csv gets "
+      "a table, whose column path_pose says which pose of the path each belongs to")
       ->required();
-  CLI::Option* vehicle =
-      command
-          ->add_option("--vehicle", options->vehicle,
-                       "The JSON file of a vehicle, of which --body names one body")
-          ->type_name("FILE");
+  CLI::Option* vehicle = add_file(*command, "--vehicle", options->vehicle,
+                                  "The JSON file of a vehicle, of which --body names one body");
   command->add_option("--body", options->body, "The name of a body of the vehicle's file")
       ->type_name("NAME")
       ->needs(vehicle);

@@ -148,14 +148,10 @@ void add_trajectory_info(CLI::App& trajectory) {
   CLI::App* command = trajectory.add_subcommand(
       "info", "Print how a trajectory is understood: format, poses, way, axes, and what is odd");
   command->add_option("IN", options->input, kTrajectoryHelp)->type_name("PATH")->required();
-  command
-      ->add_option("--env", options->environment,
-                   "A store: says whether the path lies in the scan, and gives the CRS")
-      ->type_name("FILE");
-  CLI::Option* model = command
-                           ->add_option("--model", options->model,
-                                        "The model: says how far it moves from pose to pose")
-                           ->type_name("FILE");
+  add_file(*command, "--env", options->environment,
+           "A store: says whether the path lies in the scan, and gives the CRS");
+  CLI::Option* model = add_file(*command, "--model", options->model,
+                                "The model: says how far it moves from pose to pose");
   add_model_unit(*command, options->model_unit);
   add_turn_options(*command, options->model_axes.forward, options->model_axes.up);
   options->lengths

@@ -110,11 +110,9 @@ void add_way(CLI::App& command, LineCommand& options) {
 void add_ground(CLI::App& command, LineCommand& options) {
   const GroupScope group(command, OptionGroup::kPath);
   CLI::Option* ground =
-      command
-          .add_option("--on-ground", options.ground,
-                      "A store: height and roll are those of its ground under the wheels; under a "
-                      "parked car, whose ground is not seen, about 0.3 m too high")
-          ->type_name("FILE");
+      add_file(command, "--on-ground", options.ground,
+               "A store: height and roll are those of its ground under the wheels; under a "
+               "parked car, whose ground is not seen, about 0.3 m too high");
   CLI::Option* track = options.lengths.add(command, "--track", options.line.track,
                                            "Between the middles of the left and the right wheels",
                                            FieldRange::kAboveZero);
@@ -147,28 +145,20 @@ void add_trajectory_line(CLI::App& trajectory) {
   const auto options = std::make_shared<LineCommand>();
   CLI::App* command =
       trajectory.add_subcommand("line", "Write poses in metres along a line of CSV or GeoJSON");
-  command
-      ->add_option(
-          "IN", options->input,
-          "The line: CSV with the columns x, y and, where it has them, z, station and cant; "
-          "or GeoJSON with one LineString")
-      ->type_name("FILE")
+  add_file(*command, "IN", options->input,
+           "The line: CSV with the columns x, y and, where it has them, z, station and cant; "
+           "or GeoJSON with one LineString")
       ->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "The poses: CSV with the position and the rotation of each, and its station if "
-                   "the line has stations")
-      ->type_name("FILE")
+  add_file(*command, "-o,--output", options->output,
+           "The poses: CSV with the position and the rotation of each, and its station if "
+           "the line has stations")
       ->required();
   add_way(*command, *options);
   add_ground(*command, *options);
   add_reading(*command, *options);
-  command
-      ->add_option(
-          "--env", options->environment,
-          "A store: says the unit of a line that names none, and which foot a ft is; warns "
-          "where its coordinate system is another than that of the file")
-      ->type_name("FILE")
+  add_file(*command, "--env", options->environment,
+           "A store: says the unit of a line that names none, and which foot a ft is; warns "
+           "where its coordinate system is another than that of the file")
       ->excludes("--on-ground");
   command->add_flag("--force", options->force, "Overwrite an existing output");
   command->add_flag("--json", options->json, "One JSON object on standard output");
