@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/query/ignored_points.hpp"
+#include "io/files/json.hpp"
 #include "io/files/text_number.hpp"
 
 namespace clearway::tool {
