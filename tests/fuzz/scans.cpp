@@ -14,6 +14,7 @@
 #include "io/scans/pcd/pcd_reader.hpp"
 #include "io/scans/ply/ply_reader.hpp"
 #include "io/scans/ptx/ptx_reader.hpp"
+#include "io/scans/text/text_table.hpp"
 #include "io/scans/text/xyz_reader.hpp"
 #include "io/scans/threedtk/threedtk_frame.hpp"
 #include "io/scans/threedtk/threedtk_reader.hpp"
@@ -165,10 +166,9 @@ void read_ptx_bytes(Bytes bytes) {
         return read_and_tell(*read_scan_text(std::move(input), false));
       case 3:
         return read_and_tell(*read_threedtk(std::move(input), empty.folder() / "scan000.3d"));
-      case 4:
-        return static_cast<void>(read_threedtk_pose(input));
       default:
-        read_threedtk_frames(input);
+        TextTable table(std::move(input));
+        bytes[0] % 6 == 4 ? read_threedtk_pose(table) : read_threedtk_frames(table);
     }
   });
 }

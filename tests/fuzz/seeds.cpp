@@ -44,8 +44,9 @@ class Seeds {
 void write_scans(Seeds& seeds) {
   const std::string keys("\1\0\1\0\0\0\1\0\0\4\0\0\1\0\1\0", 16);
   for (unsigned format = 0; format <= 10; ++format) {
-    LasBytes las{
-        .minor = format < 6 ? format < 4 ? 2 : 3 : 4, .format = format, .extra_bytes = format % 3};
+    LasBytes las{.minor = format < 6 ? format < 4 ? 2U : 3U : 4U,
+                 .format = format,
+                 .extra_bytes = format % 3};
     las.vlrs = {{"LASF_Projection", 34735, keys}, {"liblas", 2112, "LOCAL_CS[\"a\"]"}};
     if (las.minor == 3) las.global_encoding = 2;
     if (las.minor >= 3) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "core/util/format.hpp"
 #include "io/scans/formatted_message.hpp"
 #include "io/scans/point_formats.hpp"
 #include "io/scans/point_reader.hpp"
