@@ -268,13 +268,14 @@ void edit_store(Bytes input) {
   // Facts come last, because the columns are listed among them.
   std::ranges::stable_sort(edits, {}, &Edit::what);
   for (const Edit& edit : edits) {
+    if (edit.is_of_chunk()) continue;
     constexpr unsigned kColumns = std::size(Edit::kColumns);
+    const char* name = edit.what < 2 * kColumns ? Edit::kColumns[edit.what % kColumns]
+                                                : Edit::kFacts[edit.what - 2 * kColumns];
     const auto act = edit.what < kColumns       ? edit_column
                      : edit.what < 2 * kColumns ? resize_column
                                                 : edit_fact;
-    const char* name = edit.what < 2 * kColumns ? Edit::kColumns[edit.what % kColumns]
-                                                : Edit::kFacts[edit.what - 2 * kColumns];
-    if (!edit.is_of_chunk()) act(file.path(), name, edit);
+    act(file.path(), name, edit);
   }
   may_refuse([&] { read_store(file.path()); });
 }
