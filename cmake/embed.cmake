@@ -1,9 +1,30 @@
-# Writes OUTPUT, a source that holds the pages' files. FRAME, REPORT_PARTS, SECTION_PARTS and
-# CROSS_SECTION are HTML; STYLES, SCRIPTS and SECTION_SCRIPTS are lists joined by "|", whose files
-# are put together in this order.
-function(embed name files)
+# clearway_embed(SOURCE HEADER NAMESPACE NAME=FILE|FILE...) makes a source of the text kNAME, which
+# HEADER declares within NAMESPACE of clearway: the bytes of its files, in this order.
+if(NOT CMAKE_SCRIPT_MODE_FILE)
+  function(clearway_embed source header namespace)
+    string(REGEX REPLACE "(^|;)[A-Za-z]+=" "\\1" files "${ARGN}")
+    string(REPLACE "|" ";" files "${files}")
+    string(REPLACE ";" "||" parts "${ARGN}")
+    add_custom_command(OUTPUT ${source}
+      COMMAND ${CMAKE_COMMAND} -DHEADER=${header} -DNAMESPACE=${namespace} "-DPARTS=${parts}"
+        -DOUTPUT=${source} -P ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+      DEPENDS ${files} ${PROJECT_SOURCE_DIR}/cmake/embed.cmake
+      VERBATIM)
+    set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  endfunction()
+  return()
+endif()
+
+set(text "#include \"${HEADER}\"
+
+namespace clearway {
+")
+string(REPLACE "||" ";" PARTS "${PARTS}")
+foreach(part ${PARTS})
+  string(REGEX MATCH "^([^=]+)=(.*)$" part "${part}")
+  set(name ${CMAKE_MATCH_1})
+  string(REPLACE "|" ";" files "${CMAKE_MATCH_2}")
   set(bytes "")
-  string(REPLACE "|" ";" files "${files}")
   foreach(file ${files})
     file(READ ${file} hex HEX)
     string(APPEND bytes "${hex}")
@@ -14,23 +35,11 @@ function(embed name files)
   set(byte "0x..,")
   string(REGEX REPLACE "(${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte}${byte})"
     "\\1\n" bytes "${bytes}")
-  set(text "${text}
+  string(APPEND text "
 const unsigned char k${name}Bytes[] = {\n${bytes}0};
-const std::string_view page_parts::k${name}{reinterpret_cast<const char*>(k${name}Bytes), ${count}};
-" PARENT_SCOPE)
-endfunction()
-
-set(text "#include \"report/page.hpp\"
-
-namespace clearway {
+const std::string_view ${NAMESPACE}::k${name}{reinterpret_cast<const char*>(k${name}Bytes), ${count}};
 ")
-embed(Frame "${FRAME}")
-embed(ReportParts "${REPORT_PARTS}")
-embed(SectionParts "${SECTION_PARTS}")
-embed(CrossSection "${CROSS_SECTION}")
-embed(Style "${STYLES}")
-embed(Script "${SCRIPTS}")
-embed(SectionScript "${SECTION_SCRIPTS}")
+endforeach()
 file(WRITE ${OUTPUT} "${text}
 }  // namespace clearway
 ")

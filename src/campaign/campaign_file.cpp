@@ -1,10 +1,13 @@
 #include "campaign/campaign_file.hpp"
 
+#include <fmt/format.h>
 #include <glob.h>
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
+#include <ranges>
 #include <set>
 #include <tuple>
 #include <type_traits>
@@ -17,164 +20,137 @@
 #include "core/describe/trajectory.hpp"
 #include "core/messages/messages.hpp"
 #include "core/util/format.hpp"
+#include "io/files/file.hpp"
 #include "io/files/input_error.hpp"
-#include "io/files/json.hpp"
 #include "io/models/model_input.hpp"
 
 namespace clearway::campaign {
 namespace {
 
-std::string number_text(const nlohmann::ordered_json& number) {
-  return number.is_number_float() ? format_number(number.get<double>()) : number.dump();
-}
+namespace fs = std::filesystem;
 
-std::string value_text(const KeyReader& value, ValueKind kind);
+/// The kind of value that a key has. What the value means is for the command line to judge.
+enum class ValueKind { kLength, kText, kFlag, kCount, kSize, kNumber };
 
-/// A text as on a command line, or a list of values of this kind.
-std::string list_text(const KeyReader& value, ValueKind element_kind) {
-  if (value.value().is_string()) return value.text();
-  std::string list;
-  for (const KeyReader& element : value.elements()) {
-    list += (list.empty() ? "" : ",") + value_text(element, element_kind);
+/// A key and the option that it stands for.
+struct OptionKey {
+  const char* key;
+  const char* option;
+  ValueKind kind;
+  unsigned commands;  ///< those that take the option
+  bool is_list = false;
+  bool is_repeated = false;  ///< a list of values, for each of which the option is repeated
+};
+
+using Keys = std::vector<OptionKey>;
+
+template <typename Struct, typename Value>
+OptionKey key_of(const Field<Struct, Value>& field, unsigned commands) {
+  OptionKey key{field.name_in_campaigns(), field.option, ValueKind::kText, commands};
+  constexpr bool is_boxes = std::is_same_v<Value, std::vector<Box>>;
+  if constexpr (std::is_same_v<Value, bool>) {
+    key.kind = ValueKind::kFlag;
+  } else if constexpr (std::is_same_v<Value, double> ||
+                       std::is_same_v<Value, std::optional<double>>) {
+    const bool is_length = field.unit == FieldUnit::kMetres || field.unit == FieldUnit::kRadians;
+    key.kind = is_length ? ValueKind::kLength : ValueKind::kNumber;
+  } else if constexpr (std::is_integral_v<Value>) {
+    key.kind = field.unit == FieldUnit::kBytes ? ValueKind::kSize : ValueKind::kCount;
+  } else if constexpr (!std::is_enum_v<Value> && !std::is_same_v<Value, std::string> &&
+                       !std::is_same_v<Value, FileUnit>) {
+    key.kind = is_boxes || std::is_same_v<Value, Vec3> ? ValueKind::kLength : ValueKind::kCount;
+    key.is_list = true;
+    key.is_repeated = is_boxes;
   }
-  return list;
+  return key;
 }
 
+/// The keys of the fields that campaign.json has.
+template <typename... Fields>
+Keys keys_of(const std::tuple<Fields...>& fields, unsigned commands) {
+  Keys keys;
+  for_each_field(fields, [&](const auto& field) {
+    if (field.is_in_campaigns && *field.option != '\0') keys.push_back(key_of(field, commands));
+  });
+  return keys;
+}
+
+Keys operator+(Keys a, const Keys& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
+const Keys kNoKeys;
+const Keys kVehicleKeys = keys_of(kShapeOfModel, kReaders) + keys_of(kKindOfModel, kRuns) +
+                          keys_of(kTurnOfModel, kFindings);
+const Keys kRouteKeys =
+    keys_of(std::tuple_cat(kFormatOfTrajectory, kRigidityOfTrajectory), kReaders) +
+    Keys{{"angles", "--angles", ValueKind::kText, kReaders, true}} +
+    keys_of(std::tuple_cat(kNumbersOfTrajectory, kPlaceOfTrajectory), kReaders) +
+    Keys{{"chainage_start", "--chainage-start", ValueKind::kLength, kFindings}};
+const Keys kQueryKeys =
+    keys_of(std::tuple_cat(kQueryFields, std::tuple{kStrict<SearchOptions>}), kRuns);
+const Keys kOutputKeys = Keys{{"gap", "--gap", ValueKind::kLength, kFindings},
+                              {"min_points", "--min-points", ValueKind::kCount, kFindings},
+                              {"split", "--split", ValueKind::kLength, kFindings}} +
+                         keys_of(kLedgerFields, kFindings);
+const Keys kClassKeys{{"classes", "--classes", ValueKind::kLength, kReport, true}};
+const Keys kLimitKeys = keys_of(std::tuple_cat(std::tuple{kEngine<SearchOptions>},
+                                               kDeviceFields<SearchOptions>, kFileFields),
+                                kSearch) +
+                        keys_of(std::tuple{kMemory<SearchOptions>, kThreads<SearchOptions>}, kAll);
+
+/// A value as on a command line.
 std::string value_text(const KeyReader& value, ValueKind kind) {
-  switch (kind) {
-    case ValueKind::kLength:
-      return length_text(value);
-    case ValueKind::kCount:
-      if (!value.value().is_number_unsigned()) {
-        value.refuse("expected a whole number, 0 or more");
-      }
-      return value.value().dump();
-    case ValueKind::kNumber:
-      if (!value.value().is_number()) value.refuse("expected a number");
-      return number_text(value.value());
-    case ValueKind::kSize:
-      if (value.value().is_number_integer()) return value.value().dump();
-      if (!value.value().is_string()) {
-        value.refuse("expected bytes as a whole number, or a size in quotes, as \"4G\"");
-      }
-      return value.text();
-    case ValueKind::kLengths:
-    case ValueKind::kBoxes:
-      return list_text(value, ValueKind::kLength);
-    case ValueKind::kCounts:
-      return list_text(value, ValueKind::kCount);
-    case ValueKind::kTexts:
-      return list_text(value, ValueKind::kText);
-    default:
-      return value.text();
+  const Json& json = value.value();
+  const auto expect = [&value](bool holds, const std::string& what) {
+    if (!holds) value.refuse("expected " + what);
+  };
+  if (kind == ValueKind::kLength) {
+    expect(json.is_number() || json.is_string(), "a length, as 0.1 or \"10cm\"");
+  } else if (kind == ValueKind::kCount) {
+    expect(json.is_number_unsigned(), "a whole number, 0 or more");
+  } else if (kind == ValueKind::kNumber) {
+    expect(json.is_number(), "a number");
+  } else if (kind == ValueKind::kSize) {
+    expect(json.is_number_integer() || json.is_string(),
+           "bytes as a whole number, or a size in quotes, as \"4G\"");
   }
+  if (kind == ValueKind::kText || json.is_string()) return value.text();
+  return json.is_number_float() ? format_number(json.get<double>()) : json.dump();
 }
 
-}  // namespace
-
-std::string length_text(const KeyReader& value) {
-  if (value.value().is_number()) return number_text(value.value());
-  if (!value.value().is_string()) {
-    value.refuse("expected a length, as 0.1 or \"10cm\"");
-  }
-  return value.text();
+/// The value of an option, or its list of values, which may be a text too.
+std::string option_text(const KeyReader& value, const OptionKey& key) {
+  if (!key.is_list) return value_text(value, key.kind);
+  if (value.value().is_string()) return value.text();
+  std::vector<std::string> values;
+  for (const KeyReader& one : value.elements()) values.push_back(value_text(one, key.kind));
+  return fmt::format("{}", fmt::join(values, ","));
 }
 
-Arguments arguments_of(const KeyReader& object, const std::vector<OptionKey>& table) {
+/// The options for the keys that the object has, in the order of the table.
+Arguments arguments_of(const KeyReader& object, const Keys& keys) {
   Arguments out;
-  for (const auto& [name, option, kind] : table) {
-    if (!object.has(name)) continue;
-    const KeyReader value = object.at(name);
-    if (kind == ValueKind::kFlag) {
-      if (value.flag()) out.push_back({value.key(), option, option});
-    } else if (kind == ValueKind::kBoxes) {
-      for (const KeyReader& one : value.elements()) {
-        out.push_back({one.key(), option, option + ("=" + value_text(one, kind))});
-      }
-    } else {
-      out.push_back({value.key(), option, option + ("=" + value_text(value, kind))});
+  for (const OptionKey& key : keys) {
+    if (!object.has(key.key)) continue;
+    const KeyReader value = object.at(key.key);
+    if (key.kind == ValueKind::kFlag) {
+      if (value.flag()) out.push_back({value.key(), key.option, "", key.commands});
+      continue;
+    }
+    for (const KeyReader& one : key.is_repeated ? value.elements() : std::vector{value}) {
+      out.push_back({one.key(), key.option, option_text(one, key), key.commands});
     }
   }
   return out;
 }
 
-std::vector<std::string> names_of(const std::vector<OptionKey>& table,
-                                  std::vector<std::string> others) {
-  for (const OptionKey& key : table) others.emplace_back(key.key);
-  return others;
+/// The given names, and those of the keys of a table.
+std::vector<std::string> names_of(const Keys& keys, std::vector<std::string> names) {
+  for (const OptionKey& key : keys) names.emplace_back(key.key);
+  return names;
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-const std::vector<OptionKey> kChainageKeys{
-    {"chainage_start", "--chainage-start", ValueKind::kLength}};
-
-/// The kind of value that campaign.json has for a field.
-template <typename Struct, typename Value>
-ValueKind kind_of(const Field<Struct, Value>& field) {
-  if constexpr (std::is_same_v<Value, bool>) {
-    return ValueKind::kFlag;
-  } else if constexpr (std::is_same_v<Value, double> ||
-                       std::is_same_v<Value, std::optional<double>>) {
-    const bool is_length = field.unit == FieldUnit::kMetres || field.unit == FieldUnit::kRadians;
-    return is_length ? ValueKind::kLength : ValueKind::kNumber;
-  } else if constexpr (std::is_same_v<Value, std::vector<Box>>) {
-    return ValueKind::kBoxes;
-  } else if constexpr (std::is_integral_v<Value>) {
-    return field.unit == FieldUnit::kBytes ? ValueKind::kSize : ValueKind::kCount;
-  } else if constexpr (std::is_same_v<Value, Vec3>) {
-    return ValueKind::kLengths;
-  } else if constexpr (std::is_enum_v<Value> || std::is_same_v<Value, std::string> ||
-                       std::is_same_v<Value, FileUnit>) {
-    return ValueKind::kText;
-  } else {
-    return ValueKind::kCounts;
-  }
-}
-
-/// Adds the keys of the fields that campaign.json has.
-template <typename... Fields>
-void add_keys(std::vector<OptionKey>& keys, const std::tuple<Fields...>& fields) {
-  for_each_field(fields, [&keys](const auto& field) {
-    if (field.is_in_campaigns && *field.option != '\0') {
-      keys.push_back({field.name_in_campaigns(), field.option, kind_of(field)});
-    }
-  });
-}
-
-template <typename... Fields>
-std::vector<OptionKey> keys_of(const std::tuple<Fields...>& fields) {
-  std::vector<OptionKey> keys;
-  add_keys(keys, fields);
-  return keys;
-}
-
-std::vector<OptionKey> trajectory_keys() {
-  std::vector<OptionKey> keys = keys_of(std::tuple_cat(kFormatOfTrajectory, kRigidityOfTrajectory));
-  keys.push_back({"angles", "--angles", ValueKind::kTexts});
-  add_keys(keys, std::tuple_cat(kNumbersOfTrajectory, kPlaceOfTrajectory));
-  return keys;
-}
-
-const std::vector<OptionKey> kModelKeys = keys_of(kShapeOfModel);
-/// Options that only the search takes, because conflicts and reports know the kind of model from
-/// the result.
-const std::vector<OptionKey> kModelKindKeys = keys_of(kKindOfModel);
-const std::vector<OptionKey> kAxisKeys = keys_of(kTurnOfModel);
-const std::vector<OptionKey> kTrajectoryKeys = trajectory_keys();
-const std::vector<OptionKey> kQueryKeys =
-    keys_of(std::tuple_cat(kQueryFields, std::tuple{kStrict<SearchOptions>}));
-const std::vector<OptionKey> kConflictKeys{{"gap", "--gap", ValueKind::kLength},
-                                           {"min_points", "--min-points", ValueKind::kCount},
-                                           {"split", "--split", ValueKind::kLength}};
-const std::vector<OptionKey> kLedgerKeys = keys_of(kLedgerFields);
-/// What only a search may take of the machine, and what all commands may.
-const std::vector<OptionKey> kSearchKeys = keys_of(
-    std::tuple_cat(std::tuple{kEngine<SearchOptions>}, kDeviceFields<SearchOptions>, kFileFields));
-const std::vector<OptionKey> kLimitKeys =
-    keys_of(std::tuple{kMemory<SearchOptions>, kThreads<SearchOptions>});
 
 /// Refuses a name that cannot become a folder and a heading of the page.
 void check_name(const KeyReader& at, const std::string& name) {
@@ -198,14 +174,11 @@ void check_utf8(const KeyReader& at, const fs::path& path) {
 
 bool is_pattern(const std::string& text) { return text.find_first_of("*?[") != std::string::npos; }
 
-/// The file that is named, or the files that match a pattern, sorted by name. takes_boxes: whether
-/// a box that is named by its size may stand instead of a file.
-std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder, bool takes_boxes) {
-  const std::string given = at.text();
-  if (takes_boxes && names_box(given)) return {given};
-  const fs::path path = folder / given;
+/// The file that is named, or the files that match a pattern, sorted by name.
+std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder) {
+  const fs::path path = folder / at.text();
   std::error_code unknown;
-  if (!is_pattern(given) || fs::exists(path, unknown)) {
+  if (!is_pattern(at.text()) || fs::exists(path, unknown)) {
     if (!fs::exists(path, unknown)) at.refuse(path.string() + ": there is no such file");
     if (fs::is_other(fs::status(path, unknown))) {
       at.refuse(path.string() + ": is a pipe or device; expected a file, which tasks read again");
@@ -222,55 +195,51 @@ std::vector<fs::path> files_of(const KeyReader& at, const fs::path& folder, bool
   return files;
 }
 
-/// Reads the entries of a member such as vehicles.truck, which is either a file name or an object
-/// that contains one.
-template <typename Kind>
-class EntryReader {
- public:
-  EntryReader(fs::path folder, const char* file_key, std::vector<std::string> others,
-              bool takes_boxes = false)
-      : folder_(std::move(folder)),
-        file_key_(file_key),
-        known_(std::move(others)),
-        takes_boxes_(takes_boxes) {
-    known_.insert(known_.begin(), file_key);
-  }
-
-  template <typename Describe>
-  std::vector<Kind> read(const KeyReader& members, const Describe& describe) {
-    std::vector<Kind> out;
-    for (const KeyReader& member : members.members()) {
-      Kind kind{};
-      const bool in_short = member.value().is_string();
-      if (!in_short) member.allow(known_);
-      const KeyReader file = in_short ? member : member.at(file_key_);
-      describe(member, kind);
-      kind.key = file.key();
-      for (const fs::path& path : files_of(file, folder_, takes_boxes_)) {
-        kind.name = is_pattern(file.text()) ? path.stem().string() : member.name();
-        kind.file = names_box(path) ? path : fs::absolute(path).lexically_normal();
-        kind.is_match = is_pattern(file.text()) && path != folder_ / file.text();
-        add(file, kind, out);
-      }
-    }
-    return out;
-  }
-
- private:
-  void add(const KeyReader& at, const Kind& kind, std::vector<Kind>& out) {
-    check_name(at, kind.name);
-    check_utf8(at, kind.file);
-    const auto [other, is_new] = seen_.emplace(kind.name, kind.key);
-    if (!is_new) at.refuse("the name " + kind.name + " is that of " + other->second + " too");
-    out.push_back(kind);
-  }
-
-  fs::path folder_;
-  const char* file_key_;
-  std::vector<std::string> known_;
-  bool takes_boxes_;
-  std::map<std::string, std::string> seen_;
+/// How the entries of a member such as "vehicles" are read.
+struct EntryKind {
+  const char* file_key;            ///< the key of the file in an entry that is an object
+  const char* option;              ///< the option that takes the file
+  unsigned commands;               ///< those that take it
+  const Keys& keys;                ///< the options beside the file
+  std::vector<std::string> known;  ///< other keys that an entry may have
+  bool takes_boxes = false;        ///< whether a box that is named by its size may stand for a file
 };
+
+/// Reads the entries of a member, each of which is a file name or an object that contains one.
+/// describe: reads the other keys.
+std::vector<Entry> read_entries(const KeyReader& members, const fs::path& folder,
+                                const EntryKind& kind,
+                                const std::function<void(const KeyReader&, Entry&)>& describe) {
+  std::vector<Entry> out;
+  std::map<std::string, std::string> seen;
+  std::vector<std::string> known{kind.file_key};
+  known.insert(known.end(), kind.known.begin(), kind.known.end());
+  for (const KeyReader& member : members.members()) {
+    const bool in_short = member.value().is_string();
+    if (!in_short) member.allow(names_of(kind.keys, known));
+    const KeyReader at = in_short ? member : member.at(kind.file_key);
+    Entry of_all;
+    of_all.key = at.key();
+    of_all.arguments = arguments_of(member, kind.keys);
+    describe(member, of_all);
+    const bool is_box = kind.takes_boxes && names_box(at.text());
+    for (const fs::path& path : is_box ? std::vector<fs::path>{at.text()} : files_of(at, folder)) {
+      Entry& entry = out.emplace_back(of_all);
+      entry.name = is_pattern(at.text()) ? path.stem().string() : member.name();
+      entry.file = is_box ? path : fs::absolute(path).lexically_normal();
+      entry.is_match = is_pattern(at.text()) && path != folder / at.text();
+      check_name(at, entry.name);
+      check_utf8(at, entry.file);
+      const auto [other, is_new] = seen.emplace(entry.name, entry.key);
+      if (!is_new) at.refuse("the name " + entry.name + " is that of " + other->second + " too");
+      const bool has_bodies = kind.takes_boxes && entry.file.extension() == ".json";
+      entry.arguments.insert(
+          entry.arguments.begin(),
+          {entry.key, has_bodies ? "--vehicle" : kind.option, entry.file.string(), kind.commands});
+    }
+  }
+  return out;
+}
 
 std::size_t environment_of(const KeyReader& route, const std::vector<Entry>& environments) {
   if (!route.has("environment")) {
@@ -283,13 +252,16 @@ std::size_t environment_of(const KeyReader& route, const std::vector<Entry>& env
   return static_cast<std::size_t>(found - environments.begin());
 }
 
-/// The ending of a file's name in small letters.
-std::string ending_of(const fs::path& file) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+/// Lets the search turn a model by its axes, which conflicts and reports know from its result.
+void turn(const KeyReader& member, Entry& vehicle) {
+  if (!member.has("turn") || !member.at("turn").flag()) return;
+  bool has_axes = false;
+  for (Argument& one : vehicle.arguments) {
+    if (one.commands != kFindings) continue;
+    one.commands = kRuns;
+    has_axes = true;
   }
-  return ending;
+  if (!has_axes) member.at("turn").refuse("needs forward or up beside it");
 }
 
 /// What stands for the kind of a file that a campaign reads, by the ending of its name: files of
@@ -297,119 +269,78 @@ std::string ending_of(const fs::path& file) {
 std::string kind_of(const fs::path& file) {
   static const std::set<std::string> kTables{".txt", ".csv", ".tum", ".pose", ".frames"};
   static const std::set<std::string> kMeshes{".stl", ".obj", ".off", ".ply"};
-  const std::string ending = ending_of(file);
+  const std::string ending = file_ending(file);
   return kTables.contains(ending) ? "table" : kMeshes.contains(ending) ? "mesh" : ending;
 }
 
-/// Notes which files a pattern leaves out: those in the folders of its matches that are of their
-/// kind by their endings, and that nothing in the campaign names.
-class LeftOutFiles {
- public:
-  /// campaign: the file itself, which is none of its inputs.
-  explicit LeftOutFiles(const fs::path& campaign) { named_.insert(campaign); }
-
-  template <typename Kind>
-  void add(const std::vector<Kind>& entries) {
-    for (const Entry& entry : entries) {
-      named_.insert(entry.file);
-      if (entry.is_match) matches_[entry.key].push_back(entry.file);
+/// Names of the files in the folders of `matches` that are of their kind by their endings, sorted.
+std::vector<std::string> names_beside(const std::vector<fs::path>& matches,
+                                      const std::set<fs::path>& named) {
+  std::error_code unreadable;
+  std::set<fs::path> found;
+  std::set<std::pair<fs::path, std::string>> kinds;
+  for (const fs::path& match : matches) {
+    if (!fs::is_regular_file(match, unreadable)) continue;
+    if (!kinds.insert({match.parent_path(), kind_of(match)}).second) continue;
+    fs::directory_iterator at(match.parent_path(), unreadable);
+    for (; !unreadable && at != fs::directory_iterator(); at.increment(unreadable)) {
+      const fs::path& file = at->path();
+      const bool is_hidden = file.filename().string().starts_with('.');
+      if (is_hidden || kind_of(file) != kind_of(match) || named.contains(file)) continue;
+      if (fs::is_regular_file(file, unreadable)) found.insert(file);
     }
   }
+  std::vector<std::string> names;
+  for (const fs::path& file : found) names.push_back(valid_utf8(file.filename().string()));
+  return names;
+}
 
-  std::vector<Message> notes() const {
-    std::vector<Message> notes;
-    for (const auto& [key, matches] : matches_) {
-      const std::vector<std::string> names = beside(matches);
-      if (names.empty()) continue;
-      notes.push_back(note("unmatched-files",
-                           key + ": the pattern matches " + counted(matches.size(), "file") +
-                               " and leaves out " + counted(names.size(), "file") +
-                               " beside them of the same kind: " + listed(names),
-                           {{"matched", static_cast<double>(matches.size())},
-                            {"left_out", static_cast<double>(names.size())}}));
+/// Notes which files the patterns leave out that are of the kind of their matches and that nothing
+/// in the campaign names. file: the campaign itself, which is none of its inputs.
+std::vector<Message> notes_on_patterns(const Campaign& campaign, const fs::path& file) {
+  std::set<fs::path> named{file};
+  std::map<std::string, std::vector<fs::path>> matches_of;  // by the key of the pattern
+  for (const auto* entries : {&campaign.environments, &campaign.vehicles, &campaign.routes}) {
+    for (const Entry& entry : *entries) {
+      named.insert(entry.file);
+      if (entry.is_match) matches_of[entry.key].push_back(entry.file);
     }
-    return notes;
   }
-
- private:
-  /// Names of the files beside `matches`, sorted.
-  std::vector<std::string> beside(const std::vector<fs::path>& matches) const {
-    std::error_code unreadable;
-    std::set<std::pair<fs::path, std::string>> kinds;
-    for (const fs::path& match : matches) {
-      if (!fs::is_regular_file(match, unreadable)) continue;
-      kinds.insert({match.parent_path(), kind_of(match)});
-    }
-    std::set<fs::path> found;
-    for (const auto& [folder, kind] : kinds) {
-      fs::directory_iterator at(folder, unreadable);
-      for (; !unreadable && at != fs::directory_iterator(); at.increment(unreadable)) {
-        const fs::path& file = at->path();
-        const bool is_hidden = file.filename().string().starts_with('.');
-        if (is_hidden || kind_of(file) != kind || named_.contains(file)) continue;
-        if (fs::is_regular_file(file, unreadable)) found.insert(file);
-      }
-    }
-    std::vector<std::string> names;
-    for (const fs::path& file : found) names.push_back(valid_utf8(file.filename().string()));
-    return names;
+  constexpr std::size_t kMostNames = 5;
+  std::vector<Message> notes;
+  for (const auto& [key, matches] : matches_of) {
+    const std::vector<std::string> names = names_beside(matches, named);
+    if (names.empty()) continue;
+    notes.push_back(
+        note("unmatched-files",
+             fmt::format("{}: the pattern matches {} and leaves out {} beside them of the same "
+                         "kind: {}{}",
+                         key, counted(matches.size(), "file"), counted(names.size(), "file"),
+                         fmt::join(names | std::views::take(kMostNames), ", "),
+                         names.size() > kMostNames ? " and others" : ""),
+             {{"matched", static_cast<double>(matches.size())},
+              {"left_out", static_cast<double>(names.size())}}));
   }
+  return notes;
+}
 
-  static std::string listed(const std::vector<std::string>& names) {
-    constexpr std::size_t kMost = 5;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
-      text += (i == 0 ? "" : ", ") + names[i];
-    }
-    return names.size() > kMost ? text + " and others" : text;
-  }
-
-  std::set<fs::path> named_;
-  std::map<std::string, std::vector<fs::path>> matches_;  ///< by the key of the pattern
-};
-
-void read_entries(const KeyReader& file, const fs::path& folder, Campaign& campaign) {
-  EntryReader<Entry> environments(folder, "store", {});
-  campaign.environments =
-      environments.read(file.at("environments"), [](const KeyReader&, Entry&) {});
-  EntryReader<Vehicle> vehicles(
-      folder, "model",
-      names_of(kModelKeys, names_of(kModelKindKeys, names_of(kAxisKeys, {"turn"}))), true);
-  campaign.vehicles =
-      vehicles.read(file.at("vehicles"), [](const KeyReader& member, Vehicle& vehicle) {
-        vehicle.arguments = arguments_of(member, kModelKeys);
-        vehicle.kind = arguments_of(member, kModelKindKeys);
-        vehicle.axes = arguments_of(member, kAxisKeys);
-        if (!member.has("turn") || !member.at("turn").flag()) return;
-        if (vehicle.axes.empty()) member.at("turn").refuse("needs forward or up beside it");
-        // The search turns the model, and conflicts and reports know that from its result.
-        vehicle.kind.insert(vehicle.kind.end(), vehicle.axes.begin(), vehicle.axes.end());
-        vehicle.axes.clear();
-      });
-  EntryReader<Route> routes(folder, "trajectory",
-                            names_of(kTrajectoryKeys, names_of(kChainageKeys, {"environment"})));
-  campaign.routes = routes.read(file.at("routes"), [&](const KeyReader& member, Route& route) {
-    route.arguments = arguments_of(member, kTrajectoryKeys);
-    route.chainage = arguments_of(member, kChainageKeys);
-    route.environment = environment_of(member, campaign.environments);
-  });
+bool has_option(const Arguments& arguments, const std::string& option) {
+  return std::ranges::find(arguments, option, &Argument::option) != arguments.end();
 }
 
 void read_radii(const KeyReader& radii, Campaign& campaign) {
-  std::set<std::string> seen;
   for (const KeyReader& radius : radii.elements()) {
-    const std::string text = length_text(radius);
+    const std::string text = value_text(radius, ValueKind::kLength);
     check_name(radius, text);
-    if (!seen.insert(text).second) radius.refuse(text + " stands twice");
-    campaign.radii.push_back({radius.key(), "--radius", "--radius=" + text});
-    campaign.radius_names.push_back(text);
+    if (std::ranges::find(campaign.radii, text, &Argument::value) != campaign.radii.end()) {
+      radius.refuse(text + " stands twice");
+    }
+    campaign.radii.push_back({radius.key(), "--radius", text, kRuns});
   }
 }
 
-void read_conflict_formats(const KeyReader& outputs, Campaign& campaign) {
+void read_conflict_formats(const KeyReader& list, Campaign& campaign) {
   static const std::set<std::string> kFormats{"csv", "json", "geojson", "gpkg", "bcf"};
-  if (!outputs.has("conflicts")) return;
-  const KeyReader list = outputs.at("conflicts");
   for (const KeyReader& format : list.elements()) {
     const std::string name = format.text();
     if (!kFormats.contains(name)) format.refuse("expected csv, json, geojson, gpkg or bcf");
@@ -418,73 +349,61 @@ void read_conflict_formats(const KeyReader& outputs, Campaign& campaign) {
     }
     campaign.conflict_formats.push_back(name);
   }
-  const bool first_pose = std::ranges::any_of(
-      campaign.query, [](const Argument& one) { return one.option == "--first-pose"; });
-  if (!first_pose) list.refuse("needs \"first_pose\": true in query");
+  if (!has_option(campaign.query, "--first-pose")) {
+    list.refuse("needs \"first_pose\": true in query");
+  }
 }
 
-/// Reads where the ledgers are. What the runs find of them is taken from the conflicts as JSON.
-void read_ledgers(const KeyReader& outputs, const fs::path& folder, Campaign& campaign) {
-  const Arguments options = arguments_of(outputs, kLedgerKeys);
-  if (!outputs.has("ledger")) {
-    if (!options.empty()) outputs.at("worse_by").refuse("needs \"ledger\" beside it");
-    return;
-  }
-  const KeyReader at = outputs.at("ledger");
-  if (campaign.conflict_formats.empty()) at.refuse("needs \"conflicts\" beside it");
+void read_ledgers(const KeyReader& at, const fs::path& folder, Campaign& campaign) {
+  std::vector<std::string>& formats = campaign.conflict_formats;
+  if (formats.empty()) at.refuse("needs \"conflicts\" beside it");
   campaign.ledgers = fs::absolute(folder / at.text()).lexically_normal();
   check_utf8(at, campaign.ledgers);
-  campaign.conflicts.insert(campaign.conflicts.end(), options.begin(), options.end());
-  std::vector<std::string>& formats = campaign.conflict_formats;
   if (std::ranges::find(formats, "json") == formats.end()) formats.emplace_back("json");
 }
 
 void read_outputs(const KeyReader& file, const fs::path& folder, Campaign& campaign) {
   if (file.has("outputs")) {
     const KeyReader outputs = file.at("outputs");
-    outputs.allow(
-        names_of(kLedgerKeys, names_of(kConflictKeys, {"conflicts", "report", "ledger"})));
-    campaign.conflicts = arguments_of(outputs, kConflictKeys);
-    read_conflict_formats(outputs, campaign);
-    read_ledgers(outputs, folder, campaign);
+    outputs.allow(names_of(kOutputKeys, {"conflicts", "report", "ledger"}));
+    campaign.outputs = arguments_of(outputs, kOutputKeys);
+    if (outputs.has("conflicts")) read_conflict_formats(outputs.at("conflicts"), campaign);
+    if (outputs.has("ledger")) {
+      read_ledgers(outputs.at("ledger"), folder, campaign);
+    } else if (outputs.has("worse_by")) {
+      outputs.at("worse_by").refuse("needs \"ledger\" beside it");
+    }
     campaign.report = outputs.has("report") && outputs.at("report").flag();
   }
-  campaign.classes = arguments_of(file, {{"classes", "--classes", ValueKind::kLengths}});
-  if (!campaign.classes.empty() && !campaign.report) {
+  const Arguments classes = arguments_of(file, kClassKeys);
+  if (!classes.empty() && !campaign.report) {
     file.at("classes").refuse("needs \"report\": true in outputs");
   }
+  campaign.outputs.insert(campaign.outputs.end(), classes.begin(), classes.end());
 }
 
-void read_shard_seconds(const KeyReader& limits, Campaign& campaign) {
-  if (!limits.has("shard_seconds")) return;
-  const KeyReader at = limits.at("shard_seconds");
+void read_shard_seconds(const KeyReader& at, Campaign& campaign) {
   if (!at.value().is_number() || !(at.value().get<double>() > 0)) {
     at.refuse("expected seconds above 0, as 600");
   }
-  const bool asks_for_depths = std::ranges::any_of(
-      campaign.query, [](const Argument& argument) { return argument.text == "--depth"; });
-  if (asks_for_depths) {
+  if (has_option(campaign.query, "--depth")) {
     at.refuse("depths are not found in shards; leave out \"depth\" of the query, or this limit");
   }
   campaign.shard_seconds = at.value().get<double>();
 }
 
-/// Whether an option of sbatch is one that the script sets itself.
-bool is_of_script(const std::string& option) {
-  static constexpr std::array kOwn{"--array",      "--signal", "--requeue",
-                                   "--no-requeue", "--output", "--open-mode",
-                                   "--dependency", "--wrap",   "--chdir"};
-  const std::string name = option.substr(0, option.find('='));
-  return std::ranges::any_of(kOwn, [&](const char* own) { return name == own; });
-}
-
 void read_slurm(const KeyReader& list, Campaign& campaign) {
+  static constexpr std::array kOfScript{"--array",      "--signal", "--requeue",
+                                        "--no-requeue", "--output", "--open-mode",
+                                        "--dependency", "--wrap",   "--chdir"};
   for (const KeyReader& option : list.elements()) {
     const std::string text = option.text();
     if (!text.starts_with("--") || text.find_first_of("\n\r") != std::string::npos) {
       option.refuse("expected an option of sbatch, as \"--partition=long\"");
     }
-    if (is_of_script(text)) option.refuse(text + ": the script sets it itself");
+    if (std::ranges::find(kOfScript, text.substr(0, text.find('='))) != kOfScript.end()) {
+      option.refuse(text + ": the script sets it itself");
+    }
     campaign.slurm.push_back(text);
   }
 }
@@ -492,29 +411,37 @@ void read_slurm(const KeyReader& list, Campaign& campaign) {
 }  // namespace
 
 Campaign read_campaign(const fs::path& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
   const KeyReader file = KeyReader::parse(path, text_of_file(path));
   file.allow({"name", "environments", "vehicles", "routes", "radii", "query", "classes", "outputs",
               "limits", "slurm"});
   Campaign campaign;
   campaign.name = file.at("name").text();
   check_name(file.at("name"), campaign.name);
-  read_entries(file, fs::absolute(path).parent_path(), campaign);
-  LeftOutFiles left_out(fs::absolute(path).lexically_normal());
-  left_out.add(campaign.environments);
-  left_out.add(campaign.vehicles);
-  left_out.add(campaign.routes);
-  campaign.notes = left_out.notes();
+  campaign.environments =
+      read_entries(file.at("environments"), folder,
+                   {"store", "--env", kRuns | kReport, kNoKeys, {}}, [](const auto&, Entry&) {});
+  campaign.vehicles =
+      read_entries(file.at("vehicles"), folder,
+                   {"model", "--model", kReaders, kVehicleKeys, {"turn"}, true}, turn);
+  campaign.routes =
+      read_entries(file.at("routes"), folder,
+                   {"trajectory", "--trajectory", kReaders, kRouteKeys, {"environment"}},
+                   [&](const KeyReader& member, Entry& route) {
+                     route.environment = environment_of(member, campaign.environments);
+                   });
+  campaign.notes = notes_on_patterns(campaign, fs::absolute(path).lexically_normal());
   read_radii(file.at("radii"), campaign);
   if (file.has("query")) {
     file.at("query").allow(names_of(kQueryKeys, {}));
     campaign.query = arguments_of(file.at("query"), kQueryKeys);
   }
-  read_outputs(file, fs::absolute(path).parent_path(), campaign);
+  read_outputs(file, folder, campaign);
   if (file.has("limits")) {
-    file.at("limits").allow(names_of(kLimitKeys, names_of(kSearchKeys, {"shard_seconds"})));
-    campaign.search_limits = arguments_of(file.at("limits"), kSearchKeys);
-    campaign.limits = arguments_of(file.at("limits"), kLimitKeys);
-    read_shard_seconds(file.at("limits"), campaign);
+    const KeyReader limits = file.at("limits");
+    limits.allow(names_of(kLimitKeys, {"shard_seconds"}));
+    campaign.limits = arguments_of(limits, kLimitKeys);
+    if (limits.has("shard_seconds")) read_shard_seconds(limits.at("shard_seconds"), campaign);
   }
   if (file.has("slurm")) read_slurm(file.at("slurm"), campaign);
   return campaign;

@@ -31,31 +31,17 @@ struct CampaignPlanOptions {
   bool force = false;
 };
 
-/// The value of `option` among the limits; empty where it is not among them.
-std::string limit_of(const campaign::Arguments& limits, const std::string& option) {
-  for (const campaign::Argument& one : limits) {
-    if (one.option == option) return one.text.substr(option.size() + 1);
-  }
-  return "";
-}
-
-campaign::SlurmJob slurm_job(const campaign::Campaign& asked, const fs::path& folder,
-                             const campaign::Plan& plan) {
-  campaign::SlurmJob job{.name = asked.name,
-                         .program = fs::read_symlink("/proc/self/exe"),
+campaign::SlurmJob slurm_job(const campaign::Campaign& asked, const fs::path& folder) {
+  campaign::SlurmJob job{.program = fs::read_symlink("/proc/self/exe"),
                          .folder = fs::absolute(folder).lexically_normal(),
-                         .tasks = plan.tasks.size(),
-                         .merges = {},
                          .memory_bytes = SearchOptions{}.memory_bytes,
-                         .gpu = limit_of(asked.search_limits, "--device") == "cuda",
+                         .threads = {},
                          .options = asked.slurm};
-  for (const campaign::Task& task : plan.tasks) {
-    if (task.shards > 0) job.merges.push_back(task.number);
+  for (const campaign::Argument& limit : asked.limits) {
+    if (limit.option == "--memory") job.memory_bytes = parse_size(limit.option, limit.value);
+    if (limit.option == "--threads") job.threads = limit.value;
+    if (limit.option == "--device") job.gpu = limit.value == "cuda";
   }
-  const std::string memory = limit_of(asked.limits, "--memory");
-  if (!memory.empty()) job.memory_bytes = parse_size("--memory", memory);
-  const std::string threads = limit_of(asked.limits, "--threads");
-  if (!threads.empty()) job.threads = std::stoi(threads);
   return job;
 }
 
@@ -85,16 +71,12 @@ campaign::Plan plan_of(const campaign::Campaign& asked, const fs::path& file) {
   return plan;
 }
 
-std::string counted(std::size_t count, const char* one, const char* several) {
-  return format_count(count) + " " + (count == 1 ? one : several);
-}
-
 /// The tables of ledgers that tasks have and that do not exist yet. Throws InputError for those
 /// that a task would refuse.
 std::vector<fs::path> missing_ledgers(const campaign::Plan& plan) {
   std::vector<fs::path> missing;
   for (const campaign::Task& task : plan.tasks) {
-    const fs::path table = task.ledger();
+    const fs::path table = task.ledger;
     std::error_code unknown;
     if (table.empty()) continue;
     if (fs::exists(table, unknown)) {
@@ -137,19 +119,18 @@ void run_plan(const CampaignPlanOptions& options) {
   }
   // The scripts hold what the plan does not, such as the options of sbatch.
   make_folder(options.folder / "slurm");
-  const campaign::SlurmJob job = slurm_job(asked, options.folder, plan);
-  write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job));
-  write_script(options.folder / "submit.sh", campaign::submit_text(job));
+  const campaign::SlurmJob job = slurm_job(asked, options.folder);
+  write_script(options.folder / "campaign.sbatch", campaign::sbatch_text(job, plan));
+  write_script(options.folder / "submit.sh", campaign::submit_text(job, plan));
   if (same) {
     spdlog::info("{}: is this plan already; only the scripts are written", planned.string());
   } else {
     replace_file(planned, text);
   }
   begin_ledgers(ledgers);
-  print(fmt::format("{}: {} ({}, {}, {})\n", asked.name,
-                    counted(plan.tasks.size(), "task", "tasks"),
-                    counted(asked.vehicles.size(), "vehicle", "vehicles"),
-                    counted(asked.routes.size(), "route", "routes"),
+  print(fmt::format("{}: {} ({}, {}, {})\n", asked.name, counted(plan.tasks.size(), "task"),
+                    counted(asked.vehicles.size(), "vehicle"),
+                    counted(asked.routes.size(), "route"),
                     counted(asked.radii.size(), "radius", "radii")));
 }
 

@@ -2,16 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
 
 #include "campaign/plan.hpp"
 #include "clearway/clearway.hpp"
-#include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/steps.hpp"
 #include "cli/support/console.hpp"
-#include "cli/support/options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
@@ -29,51 +29,48 @@ namespace {
 
 using campaign::Argument;
 using campaign::Arguments;
+using campaign::Command;
 using campaign::PlannedRun;
 
-std::vector<std::string> reversed(const campaign::Command& command, const Arguments& arguments) {
-  std::vector<std::string> words;
-  for (const Argument& argument : arguments) words.insert(words.begin(), argument.text);
-  words.insert(words.end(), command.rbegin(), command.rend());
-  return words;
+/// Why a command line is refused; nothing where it is not.
+template <typename Options>
+std::optional<CLI::ParseError> refusal_of(const Command& words, const Arguments& arguments,
+                                          Options& options) {
+  CLI::App command;
+  add_options(command, options);
+  std::vector<std::string> reversed(words.rbegin(), words.rend());
+  for (const Argument& argument : arguments) reversed.insert(reversed.begin(), argument.text());
+  try {
+    command.parse(reversed);
+    return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    return error;
+  }
 }
 
-/// Why a command line is refused.
-struct Refusal {
-  int kind;  ///< a value of CLI::ExitCodes
-  std::string text;
-
-  explicit Refusal(const CLI::ParseError& error)
-      : kind(error.get_exit_code()), text(error.what()) {}
-};
-
-/// Parses a command line made of the first arguments, and returns why it is refused.
-using Parse = std::function<std::optional<Refusal>(const Arguments&)>;
-
-/// Throws InputError, where the command line with all of these arguments is refused as `whole`
-/// says. The key of campaign.json that it names is that of the first argument up to which the
-/// command line is refused for a reason of the same kind: a value that is wrong by itself, or the
-/// later one of two that exclude each other. No argument is the reason where one is missing.
-[[noreturn]] void refuse_argument(const std::filesystem::path& file, const Arguments& arguments,
-                                  const Refusal& whole, const Parse& parse) {
+/// Parses a command line. Throws InputError where it is refused. The key of campaign.json that this
+/// names is that of the first argument up to which the command line is refused for a reason of the
+/// same kind: a value that is wrong by itself, or the later one of two that exclude each other. No
+/// argument is the reason where one is missing.
+template <typename Options>
+void parse_arguments(const std::filesystem::path& file, const Command& words,
+                     const Arguments& arguments, Options& options) {
+  const auto whole = refusal_of(words, arguments, options);
+  if (!whole) return;
+  const int kind = whole->get_exit_code();
   Arguments first;
   for (const Argument& argument : arguments) {
-    if (whole.kind == static_cast<int>(CLI::ExitCodes::RequiredError)) break;
+    if (kind == static_cast<int>(CLI::ExitCodes::RequiredError)) break;
     first.push_back(argument);
-    const std::optional<Refusal> refusal = parse(first);
-    if (!refusal || refusal->kind != whole.kind) continue;
+    Options unused;
+    const auto refusal = refusal_of(words, first, unused);
+    if (!refusal || refusal->get_exit_code() != kind) continue;
     const std::string option = argument.option + ": ";  // which the key stands for
-    const std::string& text = refusal->text;
+    const std::string text = refusal->what();
     throw InputError(file.string() + ": " + argument.key + ": " +
                      (text.starts_with(option) ? text.substr(option.size()) : text));
   }
-  throw InputError(file.string() + ": " + whole.text);
-}
-
-std::string text_of(const Arguments& arguments) {
-  std::string text;
-  for (const Argument& argument : arguments) text += argument.text + '\n';
-  return text;
+  throw InputError(file.string() + ": " + whole->what());
 }
 
 void log_warnings(const std::string& key, const std::vector<Message>& messages) {
@@ -124,76 +121,26 @@ campaign::RunFacts QuestionReader::facts_of(const PlannedRun& run) {
     throw InputError(file_.string() + ": query.ignore_classes: the points of " +
                      run.environment.file.string() + " have no classes");
   }
-  const ReadTrajectory& poses = trajectory(run, options);
-  header.poses = poses.count;
-  header.trajectory_hash = poses.hash;
-  const std::uint32_t shards = options.vehicle.empty() ? add_model(run, options, poses, header)
-                                                       : add_bodies(run, options, poses, header);
+  const ReadTrajectory& path = trajectory(run, options);
+  header.poses = path.count;
+  header.trajectory_hash = path.hash;
+  ReadModel searched =
+      options.vehicle.empty() ? model(run, options) : vehicle(run, options, path.poses);
+  for (ReadModel::Part& part : searched.parts) {
+    header.model_points += part.points;
+    header.model_triangles += part.triangles;
+    if (options.vehicle.empty()) part.poses = path.poses;
+  }
+  header.model_hash = searched.hash;
+  header.notes.model_axes = searched.axes;
+  const std::uint32_t shards =
+      named(run.environment.key, [&] { return shards_of(options, searched); });
   return {campaign::question_of(header), store.unit, shards, store.fingerprint};
 }
 
-/// Adds the model of a run to `header`. Returns the number of shards.
-std::uint32_t QuestionReader::add_model(const PlannedRun& run, const RunOptions& options,
-                                        const ReadTrajectory& path, ResultHeader& header) {
-  const ReadModel& points = model(run, options);
-  if (points.triangles > 0) {
-    named(run.vehicle.key, [&] { check_surface(options.query, options.search); });
-  }
-  header.model_points = points.count;
-  header.model_triangles = points.triangles;
-  header.model_hash = points.hash;
-  header.notes.model_axes = {options.model_options.forward, options.model_options.up};
-  const std::uint64_t estimated = points_to_search(points.count, points.triangles);
-  return named(run.environment.key, [&] {
-    return estimate_.shards(options, {{points.box, estimated, path.poses}});
-  });
-}
-
-/// Adds the bodies of a run's vehicle to `header`. Each run reads them anew, because where they are
-/// depends on the route. Returns the number of shards.
-std::uint32_t QuestionReader::add_bodies(const PlannedRun& run, const RunOptions& options,
-                                         const ReadTrajectory& path, ResultHeader& header) {
-  std::vector<Message> messages;
-  Query query({}, path.poses, options.query);
-  named(run.vehicle.key, [&] {
-    check_vehicle_search(options.search);
-    query.bodies = read_vehicle(
-        options.vehicle, path.poses,
-        {model_options_of(options), options.trajectory_options, options.search.threads}, &messages);
-    check_bodies(query, options.search);
-  });
-  log_warnings(run.vehicle.key, messages);
-  std::vector<EstimatedModel> models;
-  for (const Body& body : query.bodies) {
-    header.model_points += body.model.vertices.size();
-    header.model_triangles += body.model.triangles.size();
-    models.push_back({box_of(body.model.vertices),
-                      points_to_search(body.model.vertices.size(), body.model.triangles.size()),
-                      body.poses});
-  }
-  header.model_hash = hash_of_bodies(query.bodies);
-  header.notes.model_axes = file_axes(query);
-  return named(run.environment.key, [&] { return estimate_.shards(options, models); });
-}
-
 void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
-  const auto parse_into = [](RunOptions& into,
-                             const Arguments& arguments) -> std::optional<Refusal> {
-    CLI::App command;
-    add_run_options(command, into);
-    try {
-      command.parse(reversed({"--output=" + std::string(campaign::kResultName)}, arguments));
-    } catch (const CLI::ParseError& error) {
-      return Refusal(error);
-    }
-    return std::nullopt;
-  };
-  if (const auto refusal = parse_into(options, run.arguments)) {
-    refuse_argument(file_, run.arguments, *refusal, [&](const Arguments& arguments) {
-      RunOptions unused;
-      return parse_into(unused, arguments);
-    });
-  }
+  parse_arguments(file_, {"--output=" + std::string(campaign::kResultName)},
+                  run.taken_by(campaign::kSearch), options);
   try {
     check_query(options.query, options.search);
   } catch (const UsageError& error) {
@@ -202,55 +149,44 @@ void QuestionReader::parse(const PlannedRun& run, RunOptions& options) const {
 }
 
 void QuestionReader::check_outputs(const PlannedRun& run) {
-  for (const auto& [command, arguments] : run.outputs) {
-    if (!checked_.insert(command[0] + text_of(arguments)).second) continue;
-    const Parse parse = [&command = command](const Arguments& some) -> std::optional<Refusal> {
-      CLI::App program;
-      int exit_code = 0;
-      add_conflicts(program, exit_code);
-      add_report(program);
-      for (CLI::App* one : program.get_subcommands({})) {
-        one->parse_complete_callback([] { throw CLI::Success(); });  // parsed only, not run
-      }
-      try {
-        program.parse(reversed(command, some));
-      } catch (const CLI::Success&) {
-      } catch (const CLI::ParseError& error) {
-        return Refusal(error);
-      }
-      return std::nullopt;
-    };
-    if (const auto refusal = parse(arguments)) refuse_argument(file_, arguments, *refusal, parse);
+  for (const auto& [command, words] : run.outputs) {
+    const Arguments arguments = run.taken_by(command, false);
+    std::string text = words[0];
+    for (const Argument& argument : arguments) text += '\n' + argument.text();
+    if (!checked_.insert(text).second) continue;
+    const Command options(words.begin() + 1, words.end());
+    ReportCommand report;
+    ConflictsCommand conflicts;
+    if (command == campaign::kReport) {
+      parse_arguments(file_, options, arguments, report);
+    } else {
+      parse_arguments(file_, options, arguments, conflicts);
+    }
   }
 }
 
 /// Throws InputError for classes that a report would refuse.
 void QuestionReader::check_classes(const PlannedRun& run, const RunOptions& options,
                                    double metres) const {
-  for (const auto& [command, arguments] : run.outputs) {
-    for (const Argument& one : arguments) {
-      if (one.option != "--classes") continue;
-      const auto refused = [&](const std::string& what) {
-        throw InputError(file_.string() + ": " + one.key + ": " + what);
-      };
-      std::vector<double> classes;
-      const double radius = options.query.radius, clearance = options.query.clearance;
-      for (const std::string& text :
-           CLI::detail::split(one.text.substr(one.option.size() + 1), ',')) {
-        const ParsedLength length = parse_length(one.key, text);
-        classes.push_back(length.in_units_of(metres));
-      }
-      if (classes.size() > 3 || !std::ranges::is_sorted(classes, std::less_equal{})) {
-        refused("expected one to three distances, each larger than the one before");
-      }
-      if (classes.back() < radius) {
-        refused("the last is below the radius of " + format_number(radius));
-      }
-      for (const double below : classes) {
-        if (below > clearance && below != radius) {
-          refused(format_number(below) + ": needs a clearance as large in query");
-        }
-      }
+  const auto given = std::ranges::find(run.arguments, "--classes", &Argument::option);
+  if (given == run.arguments.end()) return;
+  const auto refuse_classes = [&](const std::string& what) {
+    throw InputError(file_.string() + ": " + given->key + ": " + what);
+  };
+  std::vector<double> classes;
+  const double radius = options.query.radius, clearance = options.query.clearance;
+  for (const std::string& text : CLI::detail::split(given->value, ',')) {
+    classes.push_back(parse_length(given->key, text).in_units_of(metres));
+  }
+  if (classes.size() > 3 || !std::ranges::is_sorted(classes, std::less_equal{})) {
+    refuse_classes("expected one to three distances, each larger than the one before");
+  }
+  if (classes.back() < radius) {
+    refuse_classes("the last is below the radius of " + format_number(radius));
+  }
+  for (const double below : classes) {
+    if (below > clearance && below != radius) {
+      refuse_classes(format_number(below) + ": needs a clearance as large in query");
     }
   }
 }
@@ -276,27 +212,53 @@ const QuestionReader::Environment& QuestionReader::environment(const campaign::E
   return facts;
 }
 
-const QuestionReader::ReadModel& QuestionReader::model(const PlannedRun& run,
-                                                       const RunOptions& options) {
+QuestionReader::ReadModel QuestionReader::model(const PlannedRun& run, const RunOptions& options) {
   const ModelOptions how = named(run.vehicle.key, [&] { return model_options_of(options); });
   const std::string id =
       run.vehicle.name + '\n' + format_number(how.spacing) + '\n' + format_number(how.radius) +
       '\n' + std::to_string(static_cast<int>(how.as)) + '\n' + format_number(how.environment_unit);
-  const auto known = models_.find(id);
-  if (known != models_.end()) return known->second;
-  return named(run.vehicle.key, [&]() -> const ReadModel& {
-    check_is_model(options.model);
-    std::vector<Message> messages;
-    const Model shape = read_model(options.model, how, &messages);
-    log_warnings(run.vehicle.key, messages);
-    return models_[id] = {shape.vertices.size(), shape.triangles.size(), hash_of_model(shape),
-                          shape.empty() ? Box{} : box_of(shape.vertices)};
+  return named(run.vehicle.key, [&] {
+    if (!models_.contains(id)) {
+      check_is_model(options.model);
+      std::vector<Message> messages;
+      const Model shape = read_model(options.model, how, &messages);
+      log_warnings(run.vehicle.key, messages);
+      const Box box = shape.empty() ? Box{} : box_of(shape.vertices);
+      models_[id] = {{{shape.vertices.size(), shape.triangles.size(), box, {}}},
+                     hash_of_model(shape),
+                     {how.forward, how.up},
+                     {}};
+    }
+    if (models_[id].parts[0].triangles > 0) check_surface(options.query, options.search);
+    return models_[id];
   });
+}
+
+/// Each run reads its vehicle anew, because where the bodies are depends on the route.
+QuestionReader::ReadModel QuestionReader::vehicle(const PlannedRun& run, const RunOptions& options,
+                                                  const std::vector<Pose>& poses) const {
+  std::vector<Message> messages;
+  Query query({}, poses, options.query);
+  named(run.vehicle.key, [&] {
+    check_vehicle_search(options.search);
+    query.bodies = read_vehicle(
+        options.vehicle, poses,
+        {model_options_of(options), options.trajectory_options, options.search.threads}, &messages);
+    check_bodies(query, options.search);
+  });
+  log_warnings(run.vehicle.key, messages);
+  ReadModel read{{}, hash_of_bodies(query.bodies), file_axes(query), {}};
+  read.bodies = std::move(query.bodies);
+  for (const Body& body : read.bodies) {
+    read.parts.push_back({body.model.vertices.size(), body.model.triangles.size(),
+                          box_of(body.model.vertices), body.poses});
+  }
+  return read;
 }
 
 const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRun& run,
                                                                  const RunOptions& options) {
-  const bool needs_poses = estimate_.is_asked_for() || !options.vehicle.empty();
+  const bool needs_poses = shard_seconds_ > 0 || !options.vehicle.empty();
   const TrajectoryOptions& how = options.trajectory_options;
   // The unit and the map that a file is read into depend on the environment.
   const std::string id =
@@ -318,6 +280,22 @@ const QuestionReader::ReadTrajectory& QuestionReader::trajectory(const PlannedRu
     if (needs_poses) read.poses = std::move(poses);
     return read;
   });
+}
+
+/// The number of shards of a run, at least 1. The estimate is for the device that the run asks for:
+/// a GPU, or the CPU with the run's threads, or with one thread where it names none.
+std::uint32_t QuestionReader::shards_of(const RunOptions& run, const ReadModel& model) {
+  if (shard_seconds_ == 0) return 1;
+  if (!store_ || store_->path() != run.environment) store_.emplace(run.environment);
+  std::vector<Workload> work;
+  for (const auto& [points, triangles, box, poses] : model.parts) {
+    work.push_back(
+        workload_of(store_->reader(), run.query, box, points_to_search(points, triangles), poses));
+  }
+  const DeviceEstimate seconds = estimate_devices(work, run.query, std::max(run.search.threads, 1));
+  const double needed = run.search.device == Device::kCuda ? seconds.cuda : seconds.cpu;
+  return static_cast<std::uint32_t>(
+      std::clamp(std::ceil(needed / shard_seconds_), 1.0, double{Shard::kMost}));
 }
 
 }  // namespace clearway::tool

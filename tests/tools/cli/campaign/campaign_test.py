@@ -257,6 +257,7 @@ class Plans(Campaigns):
         run = facts["runs"][1]
         self.assertEqual([run["page"], facts["not_done"]], ["runs/v00/r01/0.1/report.html", 5])
         self.assertLess(run["least"]["distance"], 0.3)
+        self.assertGreater(run["conflicts"]["count"], 0)  # whatever files have them
         self.assertIn("Test: v00 on r01", (self.place / "new" / run["page"]).read_text())
         self.assertTrue((self.place / "new/runs/v00/r01/0.1/conflicts.bcf").exists())
 

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "campaign/task_state.hpp"
+#include "io/files/json.hpp"
+
+/// What is known of runs, as the page, `campaign status` and `campaign run` say it.
+namespace clearway::campaign {
+
+/// Each run has exactly one of these.
+enum class Outcome {
+  kConflict,
+  kUndecided,  ///< a collision is neither certain nor excluded, or the question is in doubt
+  kClearWithWarnings,
+  kClear,
+  kFailed,
+  kUnfinished
+};
+
+struct OutcomeWords {
+  Outcome outcome;
+  /// The name in JSON, and as a class of the style sheet, for example "not_done".
+  const char* name;
+  /// A character that shows the outcome without colour.
+  const char* sign;
+  /// The word after a count, for example "clear with warnings".
+  const char* word;
+  /// What one run does that has the outcome, and what several do.
+  const char *one, *several;
+  /// The text of the legend, which says what the outcome means.
+  const char* meaning;
+};
+
+inline constexpr std::array<OutcomeWords, 6> kOutcomes{
+    {{Outcome::kConflict, "conflict", "■", "conflict", "finds a conflict", "find a conflict",
+      "conflict: a point is closer than the radius, or with an error budget certainly too close"},
+     {Outcome::kUndecided, "undecided", "?", "undecided", "is undecided", "are undecided",
+      "undecided: a collision is neither certain nor excluded, or the question is in doubt; "
+      "reasons and warnings say why"},
+     {Outcome::kClearWithWarnings, "clear_with_warnings", "△", "clear with warnings",
+      "is clear with warnings", "are clear with warnings",
+      "clear with warnings: nothing is closer than the radius, but read the warnings below"},
+     {Outcome::kClear, "clear", "○", "clear", "is clear", "are clear",
+      "clear: no point is closer than the radius and the errors, and where seen space was asked "
+      "for, all of it was scanned"},
+     {Outcome::kFailed, "failed", "✕", "failed", "has failed", "have failed",
+      "failed: nothing is known"},
+     {Outcome::kUnfinished, "not_done", "…", "not done", "is not done", "are not done",
+      "not done yet, or a file has changed since: nothing is known"}}};
+
+inline const OutcomeWords& words_of(Outcome outcome) {
+  return kOutcomes.at(static_cast<std::size_t>(outcome));
+}
+
+Outcome outcome_of(const TaskStatus& run);
+/// The outcome without the conflicts that the ledger of the run accepts.
+Outcome outcome_outside(const TaskStatus& run);
+
+/// How many runs have an outcome.
+std::size_t count_of(const std::vector<TaskStatus>& runs, Outcome outcome);
+/// For example "5 runs: 1 conflict, 1 undecided, 1 clear with warnings, 1 clear, 1 failed, 0 not
+/// done".
+std::string counts_text(const std::vector<TaskStatus>& runs);
+/// An object with the counts under the names of the outcomes, which add up to the number of runs.
+Json counts_json(const std::vector<TaskStatus>& runs);
+
+/// The sums of rows and conflicts by status over the ledgers of all runs; null where no run has
+/// one.
+Json ledgers_of(const std::vector<TaskStatus>& runs);
+/// The statuses of ledgers with their numbers, such as "2 accepted, 1 gone"; empty where nothing is
+/// in them, and without a ledger. ledger: the member of the facts, or a sum of several.
+std::string ledger_words(const Json& ledger);
+
+/// The parts that are not empty, with the separator between them.
+std::string joined(std::initializer_list<std::string> parts, const char* separator);
+
+// In what follows, facts are those of a run that is done, and unit is that of its lengths, for
+// example "m".
+
+/// What has to be said besides the verdict, for example "2 warnings (out-of-reach, scan-ends);
+/// 1,234 points ignored, of which 56 would collide; not exact". Empty where there is nothing to
+/// say.
+std::string caveats_of(const Json& facts, const std::string& unit);
+/// Whether a run is undecided because its question is in doubt, so that its distances say nothing.
+bool is_in_doubt(const Json& facts);
+/// Why a run is undecided, and on how much of the path nobody knows what is there: "points are
+/// near, the question is in doubt (model-unit), not scanned on 3.2 m". Empty where nothing of this
+/// holds.
+std::string open_words(const Json& facts, const std::string& unit);
+/// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
+/// noun: whether to say that they are points.
+std::string ignored_words(const Json& facts, bool noun = true);
+/// For example "1,234 below 0.3 m not judged"; empty without a floor.
+std::string floor_clause(const Json& facts, const std::string& unit);
+
+}  // namespace clearway::campaign
