@@ -428,7 +428,7 @@ class TaskQueue {
       if (&other != &work) command.foreign.push_back(other.folder.lock().descriptor());
     }
     // Further tasks most often ask about the same store.
-    if (unfinished_.size() > 1) keep_store_of(words);
+    if (unfinished_.size() > 1) keep_store(folder.task().inputs.front().file);
     work.child = start_child(command);
   }
 

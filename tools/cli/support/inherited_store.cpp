@@ -1,9 +1,7 @@
 #include "cli/support/inherited_store.hpp"
 
-#include <algorithm>
 #include <exception>
 #include <optional>
-#include <string_view>
 #include <utility>
 
 #include "clearway/error.hpp"
@@ -33,15 +31,9 @@ bool is_kept(const std::filesystem::path& path) {
 
 }  // namespace
 
-void keep_store_of(const std::vector<std::string>& words) {
-  constexpr std::string_view kOption = "--env=";
-  const auto word =
-      std::ranges::find_if(words, [&](const std::string& one) { return one.starts_with(kOption); });
-  if (word == words.end()) return;
-  const std::filesystem::path path = word->substr(kOption.size());
+void keep_store(const std::filesystem::path& path) {
   if (is_kept(path)) return;
   inherited().reset();
-  if (!path.is_absolute()) return;  // the command works in a folder of its own
   try {
     inherited().emplace(path);
   } catch (const std::exception&) {  // the command says it

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "clearway/store.hpp"
 
@@ -10,10 +8,10 @@
 /// not read the store's index again. The children share its memory until they write there.
 namespace clearway::tool {
 
-/// Opens the store that a command with these words asks about, in the place of an earlier one,
-/// unless it is open already. Starts no thread. Where the store cannot be opened, nothing is kept,
-/// because the command itself says why.
-void keep_store_of(const std::vector<std::string>& words);
+/// Opens the store that a command asks about, in the place of an earlier one, unless it is open
+/// already. Starts no thread. Where the store cannot be opened, nothing is kept, because the
+/// command itself says why.
+void keep_store(const std::filesystem::path& path);
 
 /// Opens a store, or takes the one that is open, once, where its file is still the same. Throws as
 /// Store() does.
