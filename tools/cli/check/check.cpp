@@ -15,7 +15,6 @@
 #include <optional>
 #include <string>
 #include <system_error>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -122,11 +121,8 @@ class Step {
   Command& options() { return options_; }
   /// The whole command line, without the program's name.
   const Words& words() const { return words_; }
-  /// All that the output depends on: the words but for those that change no byte of it, and the
-  /// contents of the files that the step reads.
-  ordered_json key() const {
-    return {{"words", without_speed(words_, app_)}, {"inputs", contents_of_inputs(app_)}};
-  }
+  /// All that the output depends on.
+  ordered_json key() const { return key_of(app_); }
 
  private:
   Words words_;
@@ -154,23 +150,6 @@ void open_page(const fs::path& page) {
                page.string());
 }
 
-/// The seconds of each step, in their order.
-using StepSeconds = std::vector<std::pair<std::string, double>>;
-
-/// Notes the seconds from its beginning to its end.
-class StepClock {
- public:
-  StepClock(const char* step, StepSeconds& seconds) : step_(step), seconds_(seconds) {}
-  ~StepClock() { seconds_.emplace_back(step_, clock_.seconds()); }
-  StepClock(const StepClock&) = delete;
-  StepClock& operator=(const StepClock&) = delete;
-
- private:
-  const char* step_;
-  StepSeconds& seconds_;
-  Stopwatch clock_;
-};
-
 class Check {
  public:
   explicit Check(const CheckCommand& options) : options_(options), plan_(options) {}
@@ -183,14 +162,21 @@ class Check {
     claim_folder();
     start_gpus();
     if (options_.near) choose_corridor();
-    if (!plan_.has_store()) timed("convert", [&] { convert_scans(); });
-    timed("path", [&] { fill_path(); });
-    const RunOutcome found = timed("run", [&] { return search_widening(); });
-    const ordered_json conflicts = timed("conflicts", [&] {
-      return make_table<ConflictsCommand>(kConflictsName, plan_.conflicts());
-    });
-    timed("stations", [&] { return make_table<StationsCommand>(kStationsName, plan_.stations()); });
-    timed("report", [&] { write_page(); });
+    step_time_ = Stopwatch();
+    if (!plan_.has_store()) {
+      convert_scans();
+      end_step("convert");
+    }
+    fill_path();
+    end_step("path");
+    const RunOutcome found = search_widening();
+    end_step("run");
+    const ordered_json conflicts = find_conflicts();
+    end_step("conflicts");
+    make_stations();
+    end_step("stations");
+    write_page();
+    end_step("report");
     record_->write();
     print_answer(found, conflicts);
     if (options_.open) open_page(plan_.file(kReportName));
@@ -198,11 +184,37 @@ class Check {
   }
 
  private:
-  /// Does a step and notes its seconds.
-  template <typename Call>
-  std::invoke_result_t<Call> timed(const char* step, const Call& call) {
-    const StepClock clock(step, seconds_);
-    return call();
+  /// Notes the seconds since the step before.
+  void end_step(const char* step) {
+    seconds_.emplace_back(step, step_time_.seconds());
+    step_time_ = Stopwatch();
+  }
+
+  /// Does a step that goes on with what is there; where that is of another question and may be
+  /// replaced, does it once more in its place. do_step: gets whether it replaces.
+  template <typename Do>
+  static auto go_on_or_replace(bool may_replace, const Do& do_step) {
+    try {
+      return do_step(false);
+    } catch (const UsageError& error) {
+      if (!is_about_other_question(error.remedy()) || !may_replace) throw;
+    }
+    return do_step(true);
+  }
+
+  /// What is remembered of the file that a step makes, an object. It is made unless it is there.
+  /// make: returns what to remember.
+  template <typename Command, typename Make>
+  ordered_json made(const char* name, const Step<Command>& step, const Make& make,
+                    bool may_be_known = true) {
+    const ordered_json what = step.key();
+    ordered_json known = may_be_known ? record_->find(name, what) : ordered_json();
+    reused_[name] = known.is_object();
+    if (!known.is_object()) {
+      known = in_terms_of_check(make);
+      record_->note(name, what, known);
+    }
+    return known;
   }
 
   /// Parses the options of all steps, so that every mistake in them is found before the first step.
@@ -402,23 +414,17 @@ class Check {
   }
 
   void convert_scans() {
-    Step<ConvertCommand> step(plan_.convert(false));
     for (const Message& remark : plan_.remarks()) log_message(remark);
     std::error_code unknown;
+    const bool is_there = fs::exists(plan_.environment(), unknown);
     in_terms_of_check([&] {
-      if (!inputs_ && !fs::exists(plan_.environment(), unknown)) try_inputs();
-      try {
+      if (!inputs_ && !is_there) try_inputs();
+      // Where there is no store, only an unfinished conversion is in the way.
+      go_on_or_replace(options_.force || !is_there, [&](bool replacing) {
+        Step<ConvertCommand> step(plan_.convert(replacing));
         const ConvertReport report = perform(step.options());
         note_step(kStoreName, step.words(), report.was_finished);
-        return;
-      } catch (const UsageError& error) {
-        // Where there is no store, only an unfinished conversion is in the way.
-        const bool may_replace = options_.force || !fs::exists(plan_.environment(), unknown);
-        if (!is_about_other_question(error.remedy()) || !may_replace) throw;
-      }
-      Step<ConvertCommand> replacing(plan_.convert(true));
-      perform(replacing.options());
-      note_step(kStoreName, replacing.words(), false);
+      });
     });
   }
 
@@ -433,21 +439,18 @@ class Check {
       const double motion = motion_to_fill(Step<ChangeCommand>(of_step).options());
       if (motion == 0) return;
       Step<ChangeCommand> step(of_step);
-      const fs::path path = plan_.file(kPathName);
-      const ordered_json what = step.key();
-      const bool was_there = record_->find(kPathName, what).is_boolean();
-      if (!was_there) {
+      made(kPathName, step, [&] {
         perform(step.options());
-        record_->note(kPathName, what, true);
-      }
+        return ordered_json::object();
+      });
       spdlog::info(
           "{}: from one pose to the next the model moves by up to {:.4g} {}, farther than the "
           "radius, so this path has poses in between, on a smooth curve. All numbers of poses are "
           "of "
           "this path",
-          path.string(), motion, step.options().unit);
+          plan_.file(kPathName).string(), motion, step.options().unit);
       plan_.take_denser_path();
-      note_step(kPathName, words, was_there);
+      note_step(kPathName, words, reused_[kPathName]);
     } catch (const InputError& error) {
       spdlog::info("no poses are put between those of the path: {}", error.what());
     }
@@ -477,12 +480,8 @@ class Check {
     return in_terms_of_check([&] {
       const std::string defaults = plan_.about_distances();
       if (!defaults.empty()) spdlog::info("{}", defaults);
-      try {
-        return perform_run(false);
-      } catch (const UsageError& error) {
-        if (!is_about_other_question(error.remedy()) || !options_.force) throw;
-      }
-      return perform_run(true);
+      return go_on_or_replace(options_.force,
+                              [this](bool replacing) { return perform_run(replacing); });
     });
   }
 
@@ -512,49 +511,45 @@ class Check {
     return fs::exists(result, unknown) || fs::exists(journal_of(result), unknown);
   }
 
-  /// Makes the table that a step writes, unless it is there. Returns what the step says of it: its
-  /// text, and of conflicts a sentence about the worst.
-  template <typename Command>
-  ordered_json make_table(const char* name, const Words& words) {
-    Step<Command> step(words);
-    const ordered_json what = step.key();
-    ordered_json known = record_->find(name, what);
-    if (std::is_same_v<Command, ConflictsCommand> && plan_.has_ledger()) known = nullptr;
-    note_step(name, step.words(), known.is_object());
-    if (known.is_object()) return known;
-    const auto outcome = in_terms_of_check([&] {
-      if constexpr (std::is_same_v<Command, ConflictsCommand>) {
-        return perform(step.options(), &found_.emplace());
-      } else {
-        return perform(step.options());
-      }
-    });
-    spdlog::info("{}: written", plan_.file(name).string());
-    ordered_json said{{"text", outcome.text}};
-    if constexpr (std::is_same_v<Command, ConflictsCommand>) {
-      said["worst"] = outcome.worst;
-      said["accepted"] = outcome.accepted;
+  /// Returns what the step says: its text, and sentences about the worst conflict and about what
+  /// the ledger accepts.
+  ordered_json find_conflicts() {
+    Step<ConflictsCommand> step(plan_.conflicts());
+    const auto find = [&] {
+      const ConflictsOutcome outcome = perform(step.options(), &found_.emplace());
+      spdlog::info("{}: written", plan_.file(kConflictsName).string());
       if (plan_.has_ledger()) outside_ = outcome.outside;
-    }
-    record_->note(name, what, said);
+      return ordered_json{
+          {"text", outcome.text}, {"worst", outcome.worst}, {"accepted", outcome.accepted}};
+    };
+    // The ledger may have changed.
+    const ordered_json said = made(kConflictsName, step, find, !plan_.has_ledger());
+    note_step(kConflictsName, step.words(), reused_[kConflictsName]);
     return said;
   }
 
+  void make_stations() {
+    Step<StationsCommand> step(plan_.stations());
+    made(kStationsName, step, [&] {
+      const StationsOutcome outcome = perform(step.options());
+      spdlog::info("{}: written", plan_.file(kStationsName).string());
+      return ordered_json{{"text", outcome.text}};
+    });
+    note_step(kStationsName, step.words(), reused_[kStationsName]);
+  }
+
   void write_page() {
-    const ordered_json what = Step<ReportCommand>(plan_.report("")).key();
-    ordered_json known = record_->find(kReportName, what);
-    if (plan_.has_ledger()) known = nullptr;  // the ledger may have changed
-    if (known.is_object() && known["date"].is_string()) {
-      warnings_ = known["warnings"];
-      return note_step(kReportName, plan_.report(known["date"].get<std::string>()), true);
-    }
-    const std::string date = now_in_utc();
-    Step<ReportCommand> step(plan_.report(date));
-    const ReportSummary page =
-        in_terms_of_check([&] { return perform(step.options(), found_ ? &*found_ : nullptr); });
-    warnings_ = ordered_json::parse(page.facts)["warnings"];
-    record_->note(kReportName, what, {{"date", date}, {"warnings", warnings_}});
-    note_step(kReportName, step.words(), false);
+    const Step<ReportCommand> undated(plan_.report(""));
+    const auto write = [&] {
+      const std::string date = now_in_utc();
+      Step<ReportCommand> step(plan_.report(date));
+      const ReportSummary page = perform(step.options(), found_ ? &*found_ : nullptr);
+      return ordered_json{{"date", date},
+                          {"warnings", ordered_json::parse(page.facts)["warnings"]}};
+    };
+    const ordered_json said = made(kReportName, undated, write, !plan_.has_ledger());
+    warnings_ = said.value("warnings", ordered_json::array());
+    note_step(kReportName, plan_.report(said.value("date", "")), reused_[kReportName]);
   }
 
   /// Keeps the command line of a step, for the user to repeat it.
@@ -628,7 +623,8 @@ class Check {
   std::optional<FoundConflicts> found_;         ///< where the table of conflicts was made anew
   /// With a ledger, the verdict on what is left without its accepted conflicts.
   std::optional<Verdict> outside_;
-  StepSeconds seconds_;
+  std::vector<std::pair<std::string, double>> seconds_;  ///< of each step, in their order
+  Stopwatch step_time_;
   bool nothing_done_ = true;
 };
 

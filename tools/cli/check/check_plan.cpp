@@ -133,16 +133,14 @@ CheckPlan::CheckPlan(const CheckCommand& options)
   if (has_store_) {
     throw UsageError("--near makes a store of the scans near the path, and the input is a store");
   }
-  if (is_given("--seen")) {
-    throw UsageError("--seen needs all points of the scans, and --near leaves some out");
-  }
-  if (is_given("--depth")) {
-    throw UsageError("--depth needs all points of the scans, and --near leaves some out");
-  }
-  if (is_given("--origins-path")) {
-    throw UsageError(
+  constexpr std::array<std::pair<const char*, const char*>, 3> kRefused{
+      {{"--seen", "--seen needs all points of the scans, and --near leaves some out"},
+       {"--depth", "--depth needs all points of the scans, and --near leaves some out"},
+       {"--origins-path",
         "--near and --origins-path would be read alike; expected one of them, or clearway convert "
-        "first");
+        "first"}}};
+  for (const auto& [option, why] : kRefused) {
+    if (is_given(option)) throw UsageError(why);
   }
 }
 

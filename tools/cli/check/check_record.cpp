@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
+#include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "io/files/file.hpp"
@@ -48,14 +49,12 @@ ordered_json read_record(const std::filesystem::path& file) {
   }
 }
 
-}  // namespace
-
+/// The size and the hash of the bytes of a file, or of all files that are read where it is named
+/// (files_behind()), by which its contents are known again.
 ordered_json contents_of(const std::filesystem::path& file) {
   const SourceFile contents = describe_with_files(file);
   return {{"bytes", contents.bytes}, {"xxh64", hash_text(contents.xxh64)}};
 }
-
-namespace {
 
 /// What identifies a store with the names of its scans, which pages show.
 ordered_json contents_of_store(const std::filesystem::path& file) {
@@ -69,28 +68,39 @@ ordered_json contents_of_store(const std::filesystem::path& file) {
           {"sources", hash_text(sources.digest())}};
 }
 
+/// Whether an option is about speed and memory alone, so that it changes no byte of an output.
+bool is_of_speed(const CLI::Option& option) {
+  return option.get_group() == title_of(OptionGroup::kSpeed) || option.check_name("--threads") ||
+         option.check_name("--memory");
+}
+
+/// Adds what identifies the contents of a file that an option names.
+void add_contents(const std::string& option, const std::filesystem::path& file,
+                  ordered_json& contents) {
+  if (option == "--env") {
+    contents.push_back(contents_of_store(file));
+  } else if (names_vehicle(file)) {
+    for (const auto& one : vehicle_inputs(file, {})) contents.push_back(contents_of(one));
+  } else {
+    contents.push_back(contents_of(file));
+  }
+}
+
 }  // namespace
 
-ordered_json contents_of_inputs(const CLI::App& step) {
-  ordered_json inputs = ordered_json::object();
+ordered_json key_of(const CLI::App& step) {
+  ordered_json words = ordered_json::object(), inputs = ordered_json::object();
   for (const CLI::Option* option : step.get_options()) {
     const std::string name = option->get_name();
+    if (!option->empty() && !is_of_speed(*option)) words[name] = option->results();
     if (option->get_type_name() != "FILE" || option->check_name("--output")) continue;
     for (const std::filesystem::path file : option->results()) {
       std::error_code unknown;
       if (names_box(file) || !std::filesystem::exists(file, unknown)) continue;
-      if (name == "--env") {
-        inputs[name].push_back(contents_of_store(file));
-      } else if (names_vehicle(file)) {
-        for (const std::filesystem::path& one : vehicle_inputs(file, {})) {
-          inputs[name].push_back(contents_of(one));
-        }
-      } else {
-        inputs[name].push_back(contents_of(file));
-      }
+      add_contents(name, file, inputs[name]);
     }
   }
-  return inputs;
+  return {{"words", words}, {"inputs", inputs}};
 }
 
 CheckRecord::CheckRecord(std::filesystem::path folder)

@@ -17,13 +17,10 @@ namespace clearway::tool {
 
 inline constexpr const char* kRecordName = "check.json";
 
-/// The size and the hash of the bytes of a file, or of all files that are read where it is named
-/// (files_behind()), by which its contents are known again.
-nlohmann::ordered_json contents_of(const std::filesystem::path& file);
-
-/// What identifies the contents of all files that a command line names, but for its output: of a
-/// store its fingerprint and sources, and of a vehicle its files. step: the command, parsed.
-nlohmann::ordered_json contents_of_inputs(const CLI::App& step);
+/// All that the output of a step depends on: its options, but for those that change no byte of it,
+/// and what identifies the contents of all files that they name: of a store its fingerprint and
+/// sources, and of a vehicle its files. step: the command, parsed.
+nlohmann::ordered_json key_of(const CLI::App& step);
 
 class CheckRecord {
  public:

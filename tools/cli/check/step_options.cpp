@@ -75,25 +75,6 @@ std::vector<std::string> given_words(const CLI::App& check, const CLI::App& step
   return words;
 }
 
-std::vector<std::string> without_speed(const std::vector<std::string>& words,
-                                       const CLI::App& step) {
-  std::vector<std::string> kept;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::size_t equals = words[i].find('=');
-    const CLI::Option* option =
-        words[i].starts_with("--") ? step.get_option_no_throw(words[i].substr(0, equals)) : nullptr;
-    const bool speed =
-        option != nullptr && (option->get_group() == title_of(OptionGroup::kSpeed) ||
-                              option->check_name("--threads") || option->check_name("--memory"));
-    if (!speed) {
-      kept.push_back(words[i]);
-    } else if (equals == std::string::npos && !is_flag(*option)) {
-      ++i;  // its value
-    }
-  }
-  return kept;
-}
-
 void parse_words(CLI::App& command, const std::vector<std::string>& words) {
   command.parse(std::vector<std::string>(words.rbegin(), words.rend()));
 }

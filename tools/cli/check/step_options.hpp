@@ -32,10 +32,6 @@ void offer_options(CLI::App& check, const CLI::App& step, const StepOptions& how
 std::vector<std::string> given_words(const CLI::App& check, const CLI::App& step,
                                      const StepOptions& how);
 
-/// The words without the options that change no byte of an output: those of speed and memory. step:
-/// the command whose words they are.
-std::vector<std::string> without_speed(const std::vector<std::string>& words, const CLI::App& step);
-
 /// Parses words, such as those of given_words(), as the options of a command. Throws
 /// CLI::ParseError.
 void parse_words(CLI::App& command, const std::vector<std::string>& words);
