@@ -138,6 +138,10 @@ std::vector<Pose> poses_of(const Doubles& array, const char* name) {
   return poses;
 }
 
+std::vector<Pose> poses_of(const py::kwargs& given, const char* name) {
+  return poses_of(poses_array(given[name], name), name);
+}
+
 void require_rigid(const std::vector<Pose>& poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Stretch stretch = stretch_of(poses[i]);
@@ -150,7 +154,7 @@ void require_rigid(const std::vector<Pose>& poses) {
   }
 }
 
-py::array to_array(const std::vector<Pose>& poses) {
+py::array_t<double> to_array(const std::vector<Pose>& poses) {
   std::vector<double> numbers(16 * poses.size(), 0.0);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     double* to = numbers.data() + 16 * i;
@@ -161,10 +165,11 @@ py::array to_array(const std::vector<Pose>& poses) {
     to[15] = 1;
   }
   return to_array(std::move(numbers))
-      .reshape(std::vector<py::ssize_t>{static_cast<py::ssize_t>(poses.size()), 4, 4});
+      .reshape(std::vector<py::ssize_t>{static_cast<py::ssize_t>(poses.size()), 4, 4})
+      .cast<py::array_t<double>>();
 }
 
-py::array to_array(const Vec3& point) {
+py::array_t<double> to_array(const Vec3& point) {
   py::array_t<double> array(3);
   for (int axis = 0; axis < 3; ++axis) array.mutable_at(axis) = point[axis];
   return array;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <cstdint>
 #include <memory>
 #include <type_traits>
@@ -36,6 +34,9 @@ Doubles poses_array(const py::handle& object, const char* name);
 std::vector<Vec3> points_of(const Doubles& array, const char* name);
 std::vector<Pose> poses_of(const Doubles& array, const char* name);
 
+/// A copy of the argument `poses`, or of the one of this name.
+std::vector<Pose> poses_of(const py::kwargs& given, const char* name = "poses");
+
 /// The corners of an outline from an array of n x 2 numbers. Throws as points_array().
 std::vector<OutlinePoint> outline_of(const py::handle& object, const char* name);
 
@@ -43,9 +44,9 @@ std::vector<OutlinePoint> outline_of(const py::handle& object, const char* name)
 void require_rigid(const std::vector<Pose>& poses);
 
 /// The poses as an array of shape n x 4 x 4.
-py::array to_array(const std::vector<Pose>& poses);
+py::array_t<double> to_array(const std::vector<Pose>& poses);
 /// The point as an array of shape 3.
-py::array to_array(const Vec3& point);
+py::array_t<double> to_array(const Vec3& point);
 
 /// A point from three finite numbers.
 Vec3 point_of(const py::handle& object, const char* name);
@@ -67,7 +68,7 @@ py::capsule keep(std::vector<Value> values) {
 /// An array over the vector's memory, which `owner` keeps: of n numbers, or of n x 3 where an
 /// element of the vector has three of them.
 template <typename Value>
-py::array array_over(const std::vector<Value>& values, const py::handle& owner) {
+auto array_over(const std::vector<Value>& values, const py::handle& owner) {
   const auto rows = static_cast<py::ssize_t>(values.size());
   if constexpr (std::is_arithmetic_v<Value>) {
     return py::array_t<Value>(rows, values.data(), owner);
@@ -81,7 +82,7 @@ py::array array_over(const std::vector<Value>& values, const py::handle& owner) 
 
 /// An array over the vector's memory, which it owns; its shape is that of array_over().
 template <typename Value>
-py::array to_array(std::vector<Value> values) {
+auto to_array(std::vector<Value> values) {
   const py::capsule owner = keep(std::move(values));
   return array_over(*owner.get_pointer<std::vector<Value>>(), owner);
 }

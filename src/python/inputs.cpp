@@ -1,37 +1,45 @@
-#include "python/inputs.hpp"
-
-#include <pybind11/stl.h>
-
 #include <array>
 #include <mutex>
 #include <optional>
+#include <string>
 
 #include "clearway/alignment.hpp"
 #include "clearway/convert.hpp"
 #include "clearway/line.hpp"
+#include "clearway/smooth.hpp"
 #include "core/describe/convert.hpp"
 #include "core/describe/labels.hpp"
+#include "core/describe/reports.hpp"
+#include "core/describe/smooth.hpp"
 #include "core/describe/trajectory.hpp"
+#include "core/geometry/point_box.hpp"
+#include "core/util/format.hpp"
 #include "python/arrays.hpp"
-#include "python/fields.hpp"
-#include "python/store.hpp"
-#include "python/values.hpp"
+#include "python/binding.hpp"
+#include "python/objects.hpp"
 #include "python/watch.hpp"
 
+namespace clearway {
+
+template <>
+inline constexpr std::array kChoices<CantLine>{
+    Choice<CantLine>{"file", CantLine::kFile},
+    Choice<CantLine>{"none", CantLine::kNone},
+    Choice<CantLine>{"center", CantLine::kCenter},
+    Choice<CantLine>{"inside-rail", CantLine::kInsideRail},
+    Choice<CantLine>{"outside-rail", CantLine::kOutsideRail},
+    Choice<CantLine>{"left-rail", CantLine::kLeftRail},
+    Choice<CantLine>{"right-rail", CantLine::kRightRail}};
+template <>
+inline constexpr std::array kChoices<AxisOrder>{
+    Choice<AxisOrder>{"ne", AxisOrder::kNorthingEasting},
+    Choice<AxisOrder>{"en", AxisOrder::kEastingNorthing}};
+
+}  // namespace clearway
+
+/// Paths and scans from files.
 namespace clearway::python {
 namespace {
-
-using namespace py::literals;
-
-constexpr Choice<CantLine> kCants[] = {{"file", CantLine::kFile},
-                                       {"none", CantLine::kNone},
-                                       {"center", CantLine::kCenter},
-                                       {"inside-rail", CantLine::kInsideRail},
-                                       {"outside-rail", CantLine::kOutsideRail},
-                                       {"left-rail", CantLine::kLeftRail},
-                                       {"right-rail", CantLine::kRightRail}};
-constexpr Choice<AxisOrder> kOrders[] = {{"ne", AxisOrder::kNorthingEasting},
-                                         {"en", AxisOrder::kEastingNorthing}};
 
 std::string names_of_all_labels() {
   return names_of_labels([](const auto&) { return true; });
@@ -39,19 +47,20 @@ std::string names_of_all_labels() {
 
 py::array_t<double> label_values(const std::vector<double>& numbers) { return to_array(numbers); }
 
-py::list label_values(const std::vector<std::string>& texts) {
-  py::list out;
-  for (const std::string& each : texts) out.append(text(each));
-  return out;
-}
+std::vector<py::str> label_values(const std::vector<std::string>& texts) { return shown(texts); }
+
+constexpr std::tuple kMakerOfLabels{fact<&PoseLabels::made_by>(
+    "How clearway trajectory made the file of another one, whose name and number of poses it says; "
+    "empty for other files.")};
 
 void add_labels(py::module_& module) {
-  py::class_<PoseLabels> labels(module, "PoseLabels",
-                                ("The " + names_of_all_labels() +
-                                 " that a file gives its poses. Make an "
-                                 "empty one for read_trajectory(labels=...), "
-                                 "read_alignment(labels=...) or read_line(labels=...).")
-                                    .c_str());
+  auto labels = add_class<PoseLabels>(
+      module, "PoseLabels",
+      ("The " + names_of_all_labels() +
+       " that a file gives its poses. Make an empty one for read_trajectory(labels=...), "
+       "read_alignment(labels=...) or read_line(labels=...).")
+          .c_str(),
+      kMakerOfLabels);
   labels.def(py::init<>(), "__init__(self)\n--\n\nMake labels that read_trajectory() can fill.");
   for_each_label([&labels](const auto& label) {
     labels.def_property_readonly(
@@ -59,30 +68,133 @@ void add_labels(py::module_& module) {
         [member = label.member](const PoseLabels& given) { return label_values(given.*member); },
         label.doc);
   });
-  labels.def_readonly("made_by", &PoseLabels::made_by,
-                      "How clearway trajectory made the file of another one, whose name and number "
-                      "of poses it says; empty for other files.");
 }
 
-void add_read_trajectory(py::module_& module) {
+/// Reads the file of the argument `path`, appends to `messages` and fills `labels`.
+template <typename Read>
+py::array_t<double> poses_of_file(const py::kwargs& given, Read read) {
+  PoseLabels found;
+  const auto poses = read_noting(
+      given, [&, file = path_of(given["path"])](auto* noted) { return read(file, noted, &found); });
+  if (auto* const labels = argument<PoseLabels*>(given, "labels")) *labels = std::move(found);
+  return to_array(poses);
+}
+
+py::array_t<double> read_trajectory(const py::kwargs& given) {
+  TrajectoryOptions options;
+  set_fields(kTrajectoryFields, given, options);
+  const EnvironmentUnit environment = take_environment_unit(given, options);
+  return poses_of_file(given, [&](const auto& file, auto* noted, PoseLabels* labels) {
+    auto poses = read_trajectory(file, options, noted, labels);
+    check_unit_is_given(file, environment, options.metres_per_unit, *noted);
+    return poses;
+  });
+}
+
+py::array_t<double> read_alignment(const py::kwargs& given) {
+  using Options = AlignmentOptions;
+  Options options;
+  take<&Options::alignment, &Options::profile, &Options::station_from, &Options::station_to,
+       &Options::step, &Options::reverse, &Options::cant, &Options::rail_distance, &Options::order,
+       &Options::max_gap, &Options::height, &Options::environment_crs>(given, options);
+  return poses_of_file(given, [&](const auto& file, auto* noted, PoseLabels* labels) {
+    return read_alignment(file, options, noted, labels);
+  });
+}
+
+py::array_t<double> read_line(const py::kwargs& given) {
+  using Options = LineOptions;
+  Options options;
+  take<&Options::step, &Options::reverse, &Options::height, &Options::corner_radius,
+       &Options::track, &Options::cant, &Options::rail_distance, &Options::unit,
+       &Options::environment_crs>(given, options);
+  if (!take_environment_unit(given, options).is_given) options.environment_unit_is_assumed = false;
+  auto* const ground = argument<SharedStore*>(given, "ground");
+  if (ground != nullptr) options.ground = &ground->store;
+  return poses_of_file(given, [&](const auto& file, auto* noted, PoseLabels* labels) {
+    std::unique_lock<std::timed_mutex> turn;
+    if (ground != nullptr) turn = std::unique_lock(ground->turn);
+    return read_line(file, options, noted, labels);
+  });
+}
+
+/// What smooth_trajectory() is asked, and what watches it.
+struct SmoothOptions : SmoothParameters {
+  ProgressCallback progress = nullptr;
+  StopFlag stop = nullptr;
+};
+
+void add_smooth_path(py::module_& module) {
+  auto path = add_class<SmoothPath>(
+      module, "SmoothPath",
+      "A path on a smooth curve, and how far it is from the given one. Distances are upper bounds, "
+      "between poses as well.",
+      kSmoothPathFacts);
+  path.def_property_readonly(
+      "place", member_array<&SmoothPath::place, SmoothPath>,
+      "For each of them the place of the given path, as the index of a pose and a part of the way "
+      "to the next one: n float64.");
+  add_repr(path, [](const SmoothPath& p) {
+    return "<SmoothPath: " + counted(p.poses.size(), "pose") + ", " +
+           counted(p.control_points, "control point") + ", largest deviation " +
+           format_brief(p.largest_deviation) + ">";
+  });
+}
+
+SmoothPath smooth_trajectory(const py::kwargs& given) {
+  SmoothOptions options;
+  set_fields(kSmoothFields, given, options);
+  const std::vector<Pose> path = poses_of(given);
+  std::optional<Box> box;
+  if (!given["model"].is_none()) box = box_of(model_of(given["model"]).vertices);
+  Watch watch(given, options);
+  return watch.run(
+      [&] { return smooth_trajectory(path, options, box, options.progress, options.stop); });
+}
+
+py::dict busy_seconds(const ConvertReport& report) {
+  py::dict seconds;
+  for (const StageSeconds& stage : report.busy_seconds) seconds[text(stage.stage)] = stage.seconds;
+  return seconds;
+}
+
+void add_convert_report(py::module_& module) {
+  add_class<OriginsPathReport>(module, "OriginsPathReport",
+                               "How the points of a moving scanner found their places on its path.",
+                               kOriginsPathFacts);
+  auto report = add_class<ConvertReport>(
+      module, "ConvertReport",
+      "What a conversion did: how many points it stored, how exactly, and in what time.",
+      kConvertFacts);
+  report.def_property_readonly(
+      "busy_seconds", &busy_seconds,
+      "For how many seconds all threads together were busy with each stage: a dict by its name.");
+  add_repr(report, [](const ConvertReport& r) {
+    return "<" + std::to_string(r.points) + " points in " + std::to_string(r.cells) + " cells" +
+           warning_words(r.warnings) + ">";
+  });
+}
+
+ConvertReport convert(const py::kwargs& given) {
+  ConvertOptions options;
+  set_fields(kConvertFields, given, options);
+  set_fields(kReadingFields, given, options.path_options);
+  Watch watch(given, options);
+  return watch.run([&, from = paths_of(given["inputs"]), to = path_of(given["output"])] {
+    return convert(from, to, options);
+  });
+}
+
+}  // namespace
+
+void add_inputs(py::module_& module) {
+  add_labels(module);
+  add_convert_report(module);
+  add_smooth_path(module);
   module.def(
-      "read_trajectory",
-      [](const py::object& path, const EnvironmentUnitArgument& environment_unit,
-         const py::object& messages, PoseLabels* labels, const py::kwargs& given) {
-        const TrajectoryOptions options = trajectory_options(given, environment_unit);
-        PoseLabels found;
-        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          auto read = read_trajectory(file, options, noted, &found);
-          check_unit_is_given(file, environment_unit, options.metres_per_unit, *noted);
-          return read;
-        });
-        if (labels != nullptr) *labels = std::move(found);
-        return to_array(poses);
-      },
-      "path"_a, py::kw_only(), "environment_unit"_a = py::none(), "messages"_a = py::none(),
-      "labels"_a = py::none(),
-      ("read_trajectory(path, *, " + signature_of(kTrajectoryFields) +
-       R"DOC(, environment_unit=None, messages=None, labels=None)
+      "read_trajectory", &read_trajectory,
+      ("read_trajectory(path: Path, *, " + signature_of(kTrajectoryFields) +
+       R"DOC(, environment_unit: EnvironmentUnit = None, messages: Notes = None, labels: PoseLabels = None)
 --
 
 Read the poses of a trajectory. Returns an array of n x 4 x 4 float64.
@@ -100,42 +212,14 @@ messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the )DOC" +
        names_of_all_labels() + R"DOC( that the file has.)DOC")
           .c_str());
-  add_checks(module, "read_trajectory", kTrajectoryFields);
-}
-
-void add_read_alignment(py::module_& module) {
-  module.def(
-      "read_alignment",
-      [](const py::object& path, const std::string& alignment, const std::string& profile,
-         std::optional<double> station_from, std::optional<double> station_to, double step,
-         bool reverse, const std::string& cant, std::optional<double> rail_distance,
-         const std::string& order, double max_gap, std::optional<double> height,
-         const std::string& environment_crs, const py::object& messages, PoseLabels* labels) {
-        const AlignmentOptions options{.alignment = alignment,
-                                       .profile = profile,
-                                       .station_from = station_from,
-                                       .station_to = station_to,
-                                       .step = step,
-                                       .reverse = reverse,
-                                       .cant = value_of("cant", kCants, cant),
-                                       .rail_distance = rail_distance,
-                                       .order = value_of("order", kOrders, order),
-                                       .max_gap = max_gap,
-                                       .height = height,
-                                       .environment_crs = environment_crs};
-        PoseLabels found;
-        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_alignment(file, options, noted, &found);
-        });
-        if (labels != nullptr) *labels = std::move(found);
-        return to_array(poses);
-      },
-      "path"_a, py::kw_only(), "alignment"_a = "", "profile"_a = "", "station_from"_a = py::none(),
-      "station_to"_a = py::none(), "step"_a = 0.1, "reverse"_a = false, "cant"_a = "file",
-      "rail_distance"_a = py::none(), "order"_a = "ne", "max_gap"_a = 0.001,
-      "height"_a = py::none(), "environment_crs"_a = "", "messages"_a = py::none(),
-      "labels"_a = py::none(),
-      R"(read_alignment(path, *, alignment='', profile='', station_from=None, station_to=None, step=0.1, reverse=False, cant='file', rail_distance=None, order='ne', max_gap=0.001, height=None, environment_crs='', messages=None, labels=None)
+  module.def("read_alignment", &read_alignment,
+             R"(read_alignment(path: Path, *, alignment: Text = '', profile: Text = '',
+    station_from: Number = None, station_to: Number = None, step: Above0 = 0.1,
+    reverse: Flag = False,
+    cant: OneOf('file', 'none', 'center', 'inside-rail', 'outside-rail', 'left-rail', 'right-rail') = 'file',
+    rail_distance: Above0 = None, order: OneOf('ne', 'en') = 'ne', max_gap: From0 = 0.001,
+    height: Number = None, environment_crs: Text = '', messages: Notes = None,
+    labels: PoseLabels = None)
 --
 
 Make poses along an alignment of a LandXML file. Returns an array of n x 4 x 4 float64, metres.
@@ -161,45 +245,13 @@ environment_crs: the coordinate system of the environment, for example store.crs
     another one causes a warning.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the station of each pose.)");
-}
-
-void add_read_line(py::module_& module) {
   module.def(
-      "read_line",
-      [](const py::object& path, double step, bool reverse, std::optional<double> height,
-         std::optional<double> corner_radius, SharedStore* ground, std::optional<double> track,
-         const std::string& cant, std::optional<double> rail_distance, const UnitArgument& unit,
-         const EnvironmentUnitArgument& environment_unit, const std::string& environment_crs,
-         const py::object& messages, PoseLabels* labels) {
-        const EnvironmentUnit environment = environment_unit_of(environment_unit);
-        const LineOptions options{
-            .step = step,
-            .reverse = reverse,
-            .height = height,
-            .corner_radius = corner_radius,
-            .ground = ground == nullptr ? nullptr : &ground->store,
-            .track = track,
-            .cant = value_of("cant", kCants, cant),
-            .rail_distance = rail_distance,
-            .unit = file_unit(unit),
-            .environment_unit = environment.metres,
-            .environment_unit_is_assumed = environment_unit && environment.is_assumed,
-            .environment_crs = environment_crs};
-        PoseLabels found;
-        const auto poses = read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          std::unique_lock<std::timed_mutex> turn;
-          if (ground != nullptr) turn = std::unique_lock(ground->turn);
-          return read_line(file, options, noted, &found);
-        });
-        if (labels != nullptr) *labels = std::move(found);
-        return to_array(poses);
-      },
-      "path"_a, py::kw_only(), "step"_a = 0.1, "reverse"_a = false, "height"_a = py::none(),
-      "corner_radius"_a = py::none(), "ground"_a = py::none(), "track"_a = py::none(),
-      "cant"_a = "center", "rail_distance"_a = py::none(), "unit"_a = 0.0,
-      "environment_unit"_a = py::none(), "environment_crs"_a = "", "messages"_a = py::none(),
-      "labels"_a = py::none(),
-      R"(read_line(path, *, step=0.1, reverse=False, height=None, corner_radius=None, ground=None, track=None, cant='center', rail_distance=None, unit=0.0, environment_unit=None, environment_crs='', messages=None, labels=None)
+      "read_line", &read_line,
+      R"(read_line(path: Path, *, step: Above0 = 0.1, reverse: Flag = False, height: Number = None,
+    corner_radius: Above0 = None, ground: Store = None, track: Above0 = None,
+    cant: OneOf('none', 'center', 'inside-rail', 'outside-rail', 'left-rail', 'right-rail') = 'center',
+    rail_distance: Above0 = None, unit: Unit = 0.0, environment_unit: EnvironmentUnit = None,
+    environment_crs: Text = '', messages: Notes = None, labels: PoseLabels = None)
 --
 
 Make poses along a line of CSV or GeoJSON. Returns an array of n x 4 x 4 float64, metres.
@@ -228,128 +280,11 @@ environment_crs: the coordinate system of the environment, for example store.crs
     another one causes a warning.
 messages: a list to which notes and warnings are appended.
 labels: a PoseLabels, which gets the station of each pose if the file has stations.)");
-}
-
-py::dict busy_seconds(const ConvertReport& report) {
-  py::dict seconds;
-  for (const StageSeconds& stage : report.busy_seconds) seconds[text(stage.stage)] = stage.seconds;
-  return seconds;
-}
-
-void add_origins_path_report(py::module_& module) {
-  using Report = OriginsPathReport;
-  py::class_<Report>(module, "OriginsPathReport",
-                     "How the points of a moving scanner found their places on its path.")
-      .def_readonly("point_clock", &Report::point_clock,
-                    "What the GPS times of the points are: 'week-seconds', 'adjusted' (adjusted "
-                    "standard GPS time), or 'mixed' where files differ.")
-      .def_readonly("path_clock", &Report::path_clock,
-                    "What the times of the path are taken for: 'week-seconds', 'adjusted', or "
-                    "'standard', which is any other epoch.")
-      .def_readonly("first_point", &Report::first_point,
-                    "The least GPS time of a point, seconds as in the file.")
-      .def_readonly("last_point", &Report::last_point,
-                    "The greatest GPS time of a point, seconds as in the file.")
-      .def_readonly("first_pose", &Report::first_pose, "The time of the first pose, seconds.")
-      .def_readonly("last_pose", &Report::last_pose, "The time of the last pose, seconds.")
-      .def_readonly("shifts", &Report::shifts,
-                    "What was added to times of points to compare them with the path: a list of "
-                    "seconds, ascending.")
-      .def_readonly("before", &Report::before, "How many points are from before the first pose.")
-      .def_readonly("after", &Report::after, "How many points are from after the last pose.")
-      .def_readonly("in_gaps", &Report::in_gaps,
-                    "How many points are from between poses more than 1 s apart.")
-      .def_readonly("without_time", &Report::without_time,
-                    "How many points have no finite GPS time.");
-}
-
-void add_convert_report(py::module_& module) {
-  using Report = ConvertReport;
-  py::class_<Report>(
-      module, "ConvertReport",
-      "What a conversion did: how many points it stored, how exactly, and in what time.")
-      .def_readonly("was_finished", &Report::was_finished,
-                    "Whether the store was there already, so that nothing was converted.")
-      .def_readonly("points", &Report::points, "How many points were stored.")
-      .def_readonly("cells", &Report::cells, "Into how many cells the points were divided.")
-      .def_readonly("non_finite_points", &Report::non_finite_points,
-                    "How many points were left out because a coordinate was not a finite number.")
-      .def_readonly("absent_points", &Report::absent_points,
-                    "How many records of the scans have no point, such as beams that hit nothing.")
-      .def_readonly("withheld_points", &Report::withheld_points,
-                    "How many points were left out because they have the flag withheld.")
-      .def_readonly("kept_withheld_points", &Report::kept_withheld_points,
-                    "How many points were stored although they have the flag withheld.")
-      .def_readonly("far_points", &Report::far_points,
-                    "How many points were left out because they are too far from the path of near.")
-      .def_readonly("unread_points", &Report::unread_points,
-                    "How many of these were not even read.")
-      .def_readonly("passed_over_files", &Report::passed_over_files,
-                    "How many files were not read because of trust_bounds.")
-      .def_readonly("origins", &Report::origins,
-                    "From how many distinct places the points were seen; 0 where no input says so.")
-      .def_readonly("points_without_origin", &Report::points_without_origin,
-                    "For how many points it is not known from where they were seen.")
-      .def_readonly("origins_path", &Report::origins_path,
-                    "How the points found their places on origins_path: an OriginsPathReport; None "
-                    "without it.")
-      .def_property_readonly(
-          "scale", [](const Report& r) { return to_array(r.scale); },
-          "The step of the stored coordinates on each axis: 3 float64, metres.")
-      .def_property_readonly(
-          "offset", [](const Report& r) { return to_array(r.offset); },
-          "The place that the stored coordinates count from: 3 float64, metres.")
-      .def_readonly("box", &Report::box,
-                    "The Box around the points of the scans, those too far from a path included; "
-                    "None where there are no points.")
-      .def_readonly("largest_change", &Report::largest_change,
-                    "By how much rounding to the scale changed any coordinate at the most, metres.")
-      .def_readonly("temporary_bytes", &Report::temporary_bytes,
-                    "How many bytes temporary files took.")
-      .def_readonly("output_bytes", &Report::output_bytes, "How many bytes the store has.")
-      .def_readonly(
-          "resumed_from", &Report::resumed_from,
-          "What an interrupted call had come to, which resume=True took over: 'the inputs "
-          "were inspected', 'all points were counted' or 'all points were distributed'. "
-          "Empty where nothing was taken over.")
-      .def_readonly("count_seconds", &Report::count_seconds,
-                    "Seconds of counting the points of the inputs.")
-      .def_readonly("distribute_seconds", &Report::distribute_seconds,
-                    "Seconds of distributing the points to places of the store.")
-      .def_readonly("partition_seconds", &Report::partition_seconds,
-                    "Seconds of dividing the points into cells and writing them.")
-      .def_readonly("confirm_seconds", &Report::confirm_seconds,
-                    "Seconds of confirming that the inputs did not change meanwhile.")
-      .def_property_readonly("busy_seconds", busy_seconds,
-                             "For how many seconds all threads together were busy with each stage: "
-                             "a dict by its name.")
-      .def_property_readonly(
-          "warnings", [](const Report& r) { return to_list(r.warnings); },
-          "What may be wrong with the scans: a list of Message.")
-      .def("__repr__", [](const Report& r) {
-        return text("<" + std::to_string(r.points) + " points in " + std::to_string(r.cells) +
-                    " cells" + warning_words(r.warnings) + ">");
-      });
-}
-
-void add_convert(py::module_& module) {
   module.def(
-      "convert",
-      [](const py::object& inputs, const py::object& output, py::object progress,
-         py::object message, py::object stop, const py::kwargs& given) {
-        ConvertOptions options;
-        set_fields(kConvertFields, given, options);
-        set_fields(kReadingFields, given, options.path_options);
-        Watch watch(std::move(progress), std::move(message), std::move(stop));
-        watch.attach(options);
-        return watch.run([&, from = paths_of(inputs), to = path_of(output)] {
-          return convert(from, to, options);
-        });
-      },
-      "inputs"_a, "output"_a, py::kw_only(), "progress"_a = py::none(), "message"_a = py::none(),
-      "stop"_a = py::none(),
-      ("convert(inputs, output, *, " + signature_of(kConvertFields) + ", " +
-       signature_of(kReadingFields) + R"DOC(, progress=None, message=None, stop=None)
+      "convert", &convert,
+      ("convert(inputs: Paths, output: Path, *, " + signature_of(kConvertFields) + ", " +
+       signature_of(kReadingFields) +
+       R"DOC(, progress: Progress = None, message: Tell = None, stop: Stop = None)
 --
 
 Turn scans into a store, the one file that searches read. Returns a ConvertReport.
@@ -363,30 +298,23 @@ progress: called with a ProgressUpdate, in this thread, up to 20 times a second.
 message: called with each note and warning, a Message, in this thread.
 stop: an object with is_set(), such as threading.Event. When it is set, Interrupted is raised.)DOC")
           .c_str());
-  add_checks(module, "convert", kConvertFields);
-  add_checks(module, "convert", kReadingFields);
-}
+  module.def("smooth_trajectory", &smooth_trajectory,
+             ("smooth_trajectory(poses: Array, within: Above0, *, model: ArrayOrModel = None, " +
+              signature_of(kSmoothFields) +
+              R"DOC(, progress: Progress = None, stop: Stop = None)
+--
 
-}  // namespace
+Put a smooth curve to a noisy path, and poses on it. Returns a SmoothPath.
 
-TrajectoryOptions trajectory_options(const py::kwargs& given,
-                                     const EnvironmentUnitArgument& environment_unit) {
-  TrajectoryOptions options;
-  set_fields(kTrajectoryFields, given, options);
-  const EnvironmentUnit environment = environment_unit_of(environment_unit);
-  options.environment_unit = environment.metres;
-  options.environment_unit_is_assumed = environment.is_assumed;
-  return options;
-}
+Lengths are in the unit of the poses. A path with a jump raises InputError.
 
-void add_inputs(py::module_& module) {
-  add_labels(module);
-  add_read_trajectory(module);
-  add_origins_path_report(module);
-  add_read_alignment(module);
-  add_read_line(module);
-  add_convert_report(module);
-  add_convert(module);
+poses: the path, n x 4 x 4 or n x 3 x 4.
+within: the farthest that a model point may be from where the given path has it.
+model: points, n x 3, or a Model; required where rotations change. Without it lengths are those of
+    the positions.
+)DOC" + lines_of(kSmoothFields) +
+              R"DOC(progress, stop: as search() takes them.)DOC")
+                 .c_str());
 }
 
 }  // namespace clearway::python

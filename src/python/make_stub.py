@@ -3,7 +3,7 @@
 
 FOLDER holds the package `clearway`. Names, defaults and most types are those of the compiled part;
 types of arguments are those of their checks in _arguments.py. Where the compiled part has only an
-object, an array or a text, the table TYPES has the type.
+object or a text, the table TYPES has the type.
 """
 
 import inspect
@@ -15,7 +15,8 @@ from pathlib import Path
 sys.path.insert(0, sys.argv[1])
 
 import clearway  # noqa: E402
-from clearway import _arguments, _clearway  # noqa: E402
+from clearway import _clearway  # noqa: E402
+from clearway._arguments import signature_of  # noqa: E402
 
 HEAD = '''\
 from collections.abc import Callable, Iterable, Sequence
@@ -46,147 +47,60 @@ class ResourceError(Error): ...
 class Interrupted(Error): ...
 '''
 
-# Types of members, "Class.member" or a member of any class, of arguments, "call(argument)", and of
-# what calls return, "call()".
+# Types of members, "Class.member" or a member of any class, and of what calls return, "call()".
 TYPES = {
     "Message.severity": 'Literal["note", "warning"]',
     "numbers": "dict[str, float]",
-    "stretches": "list[tuple[int, int]]",
-    "lo": "_Doubles",
-    "hi": "_Doubles",
-    "xyz": "_Doubles",
-    "xyz()": "_Doubles",
-    "source": "_Sources",
-    "Conflict.source": "int",
-    "FoundPlace.source": "int",
-    "SmallGroup.source": "int",
-    "source()": "_Sources",
-    "distance": "_Doubles",
-    "FoundPlace.distance": "float",
-    "vertices": "_Doubles",
-    "triangles": "_Poses",
-    "solid_of": "_Poses",
-    "file_axes": "tuple[str, str]",
-    "model_axes()": "tuple[str, str]",
-    "read_model_points()": "_Doubles",
-    "read_trajectory()": "_Doubles",
-    "read_alignment()": "_Doubles",
-    "read_line()": "_Doubles",
-    "warnings": "list[Message]",
-    "warnings()": "list[Message]",
-    "MergeReport.warnings": "list[PartWarning]",
     "Store.path": "_Path",
     "Section.path": "_Path",
-    "PoseLabels.name": "list[str]",
-    "scale": "_Doubles",
-    "offset": "_Doubles",
     "busy_seconds": "dict[str, float]",
     "Answer.verdict": 'Literal["clear", "conflict", "undecided", "unknown"]',
     "SectionCheck.verdict": 'Literal["passes", "stopped", "unknown"]',
     "ReportSummary.verdict": 'Literal["clear", "conflict", "undecided"]',
-    "Answer.reasons": "list[str]",
+    "OutsideOfAccepted.verdict": 'Literal["clear", "conflict", "undecided", "unknown"]',
     "margins": "dict[str, float] | None",
-    "Answer.shard": "tuple[int, int] | None",
     "Body.model": "_Doubles | Model",
-    "Body.poses": "_Doubles",
-    "Body.path_pose": "_Poses",
     "Query.model": "Any",  # any array or a Model is taken, and float64 or a Model given
     "Query.poses": "Any",
-    "Collisions.first_pose": "_Poses | None",
-    "Collisions.last_pose": "_Poses | None",
-    "Collisions.body": "_Poses | None",
-    "Collisions.certain": "_Flags | None",
-    "point_class": "NDArray[np.uint8]",
-    "FoundPlace.point_class": "int | None",
-    "Collisions.depth": "_Doubles | None",
-    "Collisions.depth_source": "_Sources | None",
-    "UnseenCubes.cube": "NDArray[np.int32]",
-    "UnseenCubes.first_pose": "_Poses",
-    "UnseenCubes.group": "_Poses",
-    "Clearances.pose": "_Poses",
-    "Clearances.body": "_Poses",
-    "Profile.chainage": "_Doubles",
-    "first_pose()": "_Poses | None",
-    "last_pose()": "_Poses | None",
-    "first_body()": "_Poses | None",
-    "unseen()": "UnseenCubes | None",
-    "near()": "Collisions | None",
-    "clearance()": "Clearances | None",
-    "Result.profile()": "Profile | None",
-    "SessionAnswer.near": "Collisions | None",
-    "SessionAnswer.clearances": "Clearances | None",
-    "SessionAnswer.profile": "Profile | None",
-    "SessionAnswer.unseen": "UnseenCubes | None",
-    "centroid": "_Doubles",
-    "nearest_point": "_Doubles | None",
-    "conflict_of": "_Poses",
     "Ledger.counts()": "dict[str, int]",
     "Ledger.columns()": "dict[str, Any]",  # lists of texts and arrays of numbers
-    "OutsideOfAccepted.verdict": 'Literal["clear", "conflict", "undecided", "unknown"]',
-    "window": "tuple[float, float, float, float]",
-    "SectionParameters.pivots": "tuple[float, float] | None",
     "SectionReport.device": 'Literal["cpu", "cuda"]',
-    "SectionStop.cell": "tuple[int, int]",
     "SectionCheck.reason": "str | None",
-    "SectionCheck.stop": "SectionStop | None",
-    "SmoothPath.poses": "_Doubles",
-    "SmoothPath.place": "_Doubles",
-    "OutlineRowCheck.outline": "str",
-    "OutlineRowCheck.bins": "tuple[int, int] | None",
-    "OutlineGap.bins": "tuple[int, int]",
-    "SectionCells.bin": "_Poses | None",
-    "SectionCells.j": "NDArray[np.int32]",
-    "SectionCells.k": "NDArray[np.int32]",
-    "SectionCells.first_pose": "_Poses",
-    "SectionBand.left": "float | None",
-    "SectionBand.left_pose": "int | None",
-    "SectionBand.right": "float | None",
-    "SectionBand.right_pose": "int | None",
     "SectionBand.left_end": 'Literal["blocked", "not-known"] | None',
     "SectionBand.right_end": 'Literal["blocked", "not-known"] | None',
-    "Section.chainage()": "_Doubles",
-    "Section.bins()": "_Poses",
-    "unknown_cells()": "SectionCells | None",
-    "unknown_bin_cells()": "SectionCells | None",
-    "free_cells()": "_Flags",
     "ReportSummary.conflicts": "Conflicts",
-    "read_line(cant)": ('Literal["none", "center", "inside-rail", "outside-rail", "left-rail", '
-                        '"right-rail"]'),
-    "(forward)": "_Axis",
-    "(up)": "_Axis",
-    "outline_model(outline)": "_Doubles | Sequence[Sequence[float]]",
     "Session.__enter__": "def __enter__(self) -> Self: ...",
     "Session.__exit__": "def __exit__(self, *raised: object) -> None: ...",
 }
 
-COMPILED = {"List": "list", "Dict": "dict", "Tuple": "tuple"}
+ARRAYS = {"float64": "_Doubles", "uint64": "_Sources", "uint32": "_Poses", "bool": "_Flags"}
 
 
 def type_of(call, *names):
-    """What a compiled function returns, as its message about missing arguments says."""
+    """What a compiled function returns, as its message about wrong arguments says."""
     for name in names:
         if name in TYPES:
             return TYPES[name]
     try:
-        call()
+        call(*[object()] * 9)
     except TypeError as error:
         found = re.search(r" -> (.*)$", str(error), re.M)[1]
-    found = re.sub(r"float\[\d\]", "float", found.replace("clearway._clearway.", ""))
-    found = re.sub(r"\b(List|Dict|Tuple)\b", lambda name: COMPILED[name[0]], found)
+    found = re.sub(r"\bclearway(\._clearway\.|::)", "", found)
+    found = re.sub(r"float\[\d\]", "float", found)
+    found = re.sub(r"\b(List|Dict|Tuple)\b", lambda name: name[0].lower(), found)
+    found = re.sub(r"numpy\.ndarray\[(?:numpy\.)?(\w+)\]",
+                   lambda kind: ARRAYS.get(kind[1], f"NDArray[np.{kind[1]}]"), found)
     found = re.sub(r"^Optional\[(.*)\]$", r"\1 | None", found)
-    found = found.replace("numpy.ndarray[numpy.float64]", "_Doubles").replace("clearway::", "")
     if re.search(r"\b(object|tuple|numpy\.ndarray)$|^(list|dict)$", found):
         raise SystemExit(f"make_stub.py: TYPES lacks {names[0]}, of which the module has {found}")
     return found
 
 
-def argument(call, parameter):
+def argument(parameter):
     """A parameter as the stub has it."""
     if parameter.name == "self":
         return "self"
-    check = _arguments._check_of(call, parameter.name)
-    kind = TYPES.get(f"{call}({parameter.name})") or TYPES.get(f"({parameter.name})") or getattr(
-        check, "annotation", "Any")
+    kind = parameter.annotation.annotation
     if parameter.default is inspect.Parameter.empty:
         return f"{parameter.name}: {kind}"
     if parameter.default is None and not kind.endswith("| None"):
@@ -194,14 +108,14 @@ def argument(call, parameter):
     return f"{parameter.name}: {kind} = {parameter.default!r}".replace("'", '"')
 
 
-def function(name, call, made, returned):
-    """The definition of a function. call: its name for people."""
+def function(name, made, returned):
+    """The definition of a function."""
     parts, keywords = [], False
-    for parameter in inspect.signature(made).parameters.values():
+    for parameter in signature_of(made.__wrapped__).parameters.values():
         if parameter.kind == parameter.KEYWORD_ONLY and not keywords:
             keywords = True
             parts.append("*")
-        parts.append(argument(call, parameter))
+        parts.append(argument(parameter))
     line = f"def {name}({', '.join(parts)}) -> {returned}: ..."
     if len(line) <= 100:
         return line
@@ -226,9 +140,9 @@ def members(made):
                 yield TYPES[key]
             elif member == "__init__":
                 if hasattr(value, "__wrapped__"):  # others are made by the module alone
-                    yield function(member, name, value, "None")
+                    yield function(member, value, "None")
             elif hasattr(value, "__wrapped__"):
-                yield function(member, key, value, type_of(value.__wrapped__, key + "()", member + "()"))
+                yield function(member, value, type_of(value.__wrapped__, key + "()", member + "()"))
             elif member == "__len__":
                 yield "def __len__(self) -> int: ..."
 
@@ -246,7 +160,7 @@ def main():
             text += f"class {name}{f'({bases[0]})' if bases else ''}:\n"
             text += textwrap.indent("\n".join(members(made)) or "...", "    ") + "\n"
         elif callable(made):
-            text += function(name, name, made, type_of(made.__wrapped__, name + "()")) + "\n"
+            text += function(name, made, type_of(made.__wrapped__, name + "()")) + "\n"
         else:
             text += f"{name}: {type(value).__name__}\n"
     Path(sys.argv[2]).write_text(text, encoding="utf-8")

@@ -1,35 +1,25 @@
-#include "python/model.hpp"
-
-#include <pybind11/stl.h>
+#include "clearway/model.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "clearway/body.hpp"
 #include "clearway/error.hpp"
 #include "clearway/outline.hpp"
+#include "core/describe/model.hpp"
+#include "python/arrays.hpp"
+#include "python/binding.hpp"
+#include "python/objects.hpp"
 #include "python/values.hpp"
 
 namespace clearway::python {
 namespace {
 
-using namespace py::literals;
-
 using Triangle = std::array<std::uint32_t, 3>;
-using Corners = py::array_t<std::uint32_t, py::array::c_style>;
-
-py::array triangles_array(const std::vector<Triangle>& triangles) {
-  Corners array({static_cast<py::ssize_t>(triangles.size()), py::ssize_t{3}});
-  std::copy_n(triangles.empty() ? nullptr : triangles.front().data(), 3 * triangles.size(),
-              array.mutable_data());
-  return array;
-}
 
 /// Triangles from an array of n x 3 whole numbers, each below `points`.
 std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points) {
@@ -59,23 +49,30 @@ std::vector<Triangle> triangles_of(const py::handle& object, std::size_t points)
   return triangles;
 }
 
+Model make_model(const py::kwargs& given) {
+  Model model;
+  model.spacing = argument<double>(given, "spacing");
+  model.vertices = points_of(points_array(given["vertices"], "vertices"), "vertices");
+  model.triangles = triangles_of(given["triangles"], model.vertices.size());
+  return model;
+}
+
+constexpr std::tuple kModelFacts{
+    fact<&Model::spacing>(
+        "Metres. The vertices are samples of a mesh, and no place of its surface is farther than "
+        "this from one of them. 0 where the model is no sampled mesh."),
+    fact<&Model::file_axes>(
+        "The axes of the model's file that pointed ahead and up before the model was turned, such "
+        "as ('+y', '+z'); ('+x', '+z') where it was not turned.")};
+
 void add_shape(py::module_& module) {
-  py::class_<Model> shapes(
-      module, "Model", "A model: points, or a surface of triangles, which is searched as it is.");
-  shapes.attr("NO_SOLID") = kNoSolid;
-  shapes
-      .def(py::init([](const py::object& vertices, const py::object& triangles, double spacing) {
-             if (!(spacing >= 0) || !std::isfinite(spacing)) {
-               throw UsageError("spacing: expected metres from 0");
-             }
-             Model model;
-             model.vertices = points_of(points_array(vertices, "vertices"), "vertices");
-             model.triangles = triangles_of(triangles, model.vertices.size());
-             model.spacing = spacing;
-             return model;
-           }),
-           "vertices"_a, "triangles"_a = py::tuple(), "spacing"_a = 0.0,
-           R"(__init__(self, vertices, triangles=(), spacing=0.0)
+  auto shape = add_class<Model>(
+      module, "Model", "A model: points, or a surface of triangles, which is searched as it is.",
+      kModelFacts);
+  shape.attr("NO_SOLID") = kNoSolid;
+  shape
+      .def(py::init(&make_model),
+           R"(__init__(self, vertices: Array, triangles: Array = (), spacing: From0 = 0.0)
 --
 
 Make a model of arrays.
@@ -84,98 +81,61 @@ vertices: n x 3 real numbers, metres, in the model's own frame.
 triangles: m x 3 indices of vertices. Empty: the vertices themselves are the model.
 spacing: where the vertices are samples of a mesh, how far its surface may be from them, metres.)")
       .def_property_readonly(
-          "vertices", [](const Model& s) { return to_array(s.vertices); },
+          "vertices", member_array<&Model::vertices, Model>,
           "The points of the model, or the corners of its triangles: n x 3 float64, metres.")
       .def_property_readonly(
-          "triangles", [](const Model& s) { return triangles_array(s.triangles); },
+          "triangles", member_array<&Model::triangles, Model>,
           "The triangles, each as three indices of vertices: n x 3 uint32. Empty where the model "
-          "is "
-          "its points.")
+          "is its points.")
       .def_property_readonly(
-          "solid_of", [](const Model& s) { return to_array(s.solid_of); },
+          "solid_of", member_array<&Model::solid_of, Model>,
           "The number of the solid that each triangle belongs to, or NO_SOLID: n uint32. Empty "
-          "where "
-          "nothing has an inside.")
-      .def_readonly("spacing", &Model::spacing,
-                    "Metres. The vertices are samples of a mesh, and no place of its surface is "
-                    "farther than this from one of them. 0 where the model is no sampled mesh.")
-      .def_property_readonly(
-          "file_axes", [](const Model& s) { return to_tuple(s.file_axes); },
-          "The axes of the model's file that pointed ahead and up before the model was turned, "
-          "such "
-          "as ('+y', '+z'); ('+x', '+z') where it was not turned.")
-      .def("__repr__", [](const Model& s) {
-        return text("<Model: " + std::to_string(s.vertices.size()) + " vertices, " +
-                    std::to_string(s.triangles.size()) + " triangles>");
-      });
+          "where nothing has an inside.");
+  add_repr(shape, [](const Model& m) {
+    return "<Model: " + std::to_string(m.vertices.size()) + " vertices, " +
+           std::to_string(m.triangles.size()) + " triangles>";
+  });
 }
 
-void add_read_model_points(py::module_& module) {
-  module.def(
-      "read_model_points",
-      [](const py::object& path, const EnvironmentUnitArgument& environment_unit,
-         const py::object& messages, const py::kwargs& given) {
-        const ModelOptions options = model_options(ModelAs::kPoints, given, environment_unit);
-        return to_array(read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          auto read = read_model_points(file, options, noted);
-          check_unit_is_given(file, environment_unit, options.unit, *noted);
-          return read;
-        }));
-      },
-      "path"_a, py::kw_only(), "environment_unit"_a = py::none(), "messages"_a = py::none(),
-      ("read_model_points(path, *, " + signature_of(kModelFields) +
-       R"DOC(, environment_unit=None, messages=None)
---
-
-Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
-
-The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
-read_model() also keeps how far the surface may be from the points, so that answers say it.
-
-path: the file.
-)DOC" + lines_of(kModelFields) +
-       R"DOC(environment_unit: the environment's unit, into which a known unit is converted:
-    store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
-    another unit is refused then.
-messages: a list to which notes and warnings are appended.)DOC")
-          .c_str());
-  add_checks(module, "read_model_points", kModelFields);
+/// Reads the file of the argument `path` as a model. read: read_model() or read_model_points().
+template <typename Read>
+auto model_of_file(const py::kwargs& given, ModelOptions options, Read read) {
+  set_fields(kModelFields, given, options);
+  const EnvironmentUnit environment = take_environment_unit(given, options);
+  return read_noting(given, [&, file = path_of(given["path"])](auto* noted) {
+    auto model = read(file, options, noted);
+    check_unit_is_given(file, environment, options.unit, *noted);
+    return model;
+  });
 }
 
-void add_read_model(py::module_& module) {
-  module.def(
-      "read_model",
-      [](const py::object& path, const std::string& model_as,
-         const EnvironmentUnitArgument& environment_unit, const py::object& messages,
-         const py::kwargs& given) {
-        const ModelOptions options = model_options(
-            value_of("model_as", kChoices<ModelAs>, model_as), given, environment_unit);
-        return read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          Model read = read_model(file, options, noted);
-          check_unit_is_given(file, environment_unit, options.unit, *noted);
-          return read;
-        });
-      },
-      "path"_a, "model_as"_a = "auto", py::kw_only(), "environment_unit"_a = py::none(),
-      "messages"_a = py::none(),
-      ("read_model(path, model_as='auto', *, " + signature_of(kModelFields) +
-       R"DOC(, environment_unit=None, messages=None)
---
-
-Read a model, to be searched as it is. Returns a Model.
-
-path: the file.
-)DOC" + lines_of(kKindOfModel) +
-       lines_of(kModelFields) +
-       R"DOC(environment_unit, messages: as read_model_points() takes them.)DOC")
-          .c_str());
-  add_checks(module, "read_model", kKindOfModel);
-  add_checks(module, "read_model", kModelFields);
+py::array_t<double> read_model_points(const py::kwargs& given) {
+  return to_array(model_of_file(given, {.as = ModelAs::kPoints}, [](const auto&... arguments) {
+    return read_model_points(arguments...);
+  }));
 }
 
-}  // namespace
+Model read_model(const py::kwargs& given) {
+  ModelOptions options;
+  set_fields(kKindOfModel, given, options);
+  return model_of_file(given, options,
+                       [](const auto&... arguments) { return read_model(arguments...); });
+}
 
-namespace {
+py::array_t<double> read_outline(const py::kwargs& given) {
+  OutlineOptions options;
+  take<&OutlineOptions::mirror, &OutlineOptions::unit>(given, options);
+  const auto corners = read_noting(given, [&, file = path_of(given["path"])](auto* noted) {
+    return read_outline(file, options, noted);
+  });
+  py::array_t<double> array({static_cast<py::ssize_t>(corners.size()), py::ssize_t{2}});
+  double* at = array.mutable_data();
+  for (const auto& [y, z] : corners) {
+    *at++ = y;
+    *at++ = z;
+  }
+  return array;
+}
 
 void refuse_none(const py::handle& object) {
   if (!object.is_none()) return;
@@ -185,10 +145,6 @@ void refuse_none(const py::handle& object) {
 }
 
 }  // namespace
-
-py::tuple to_tuple(const ModelAxes& axes) {
-  return py::make_tuple(name_of(axes.forward), name_of(axes.up));
-}
 
 py::object model_object(const py::handle& object) {
   refuse_none(object);
@@ -204,17 +160,6 @@ Model model_of(const py::object& object) {
   return model;
 }
 
-ModelOptions model_options(ModelAs as, const py::kwargs& given,
-                           const EnvironmentUnitArgument& environment_unit) {
-  ModelOptions options;
-  set_fields(kModelFields, given, options);
-  const EnvironmentUnit environment = environment_unit_of(environment_unit);
-  options.as = as;
-  options.environment_unit = environment.metres;
-  options.environment_unit_is_assumed = environment.is_assumed;
-  return options;
-}
-
 std::string model_words(const py::object& object) {
   if (py::isinstance<Model>(object)) {
     const std::size_t triangles = object.cast<const Model&>().triangles.size();
@@ -224,11 +169,15 @@ std::string model_words(const py::object& object) {
   return std::to_string(py::len(object)) + " model points";
 }
 
-namespace {
-
-void add_made_models(py::module_& module) {
-  module.def("box_model", &box_model, "length"_a, "width"_a, "height"_a,
-             R"(box_model(length, width, height)
+void add_model(py::module_& module) {
+  add_shape(module);
+  module.def(
+      "box_model",
+      [](const py::kwargs& given) {
+        const auto side = [&](const char* name) { return argument<double>(given, name); };
+        return box_model(side("length"), side("width"), side("height"));
+      },
+      R"(box_model(length: Above0, width: Above0, height: Above0)
 --
 
 Make a closed box that stands on z = 0, with its middle over the origin. Returns a Model, a solid.
@@ -236,11 +185,11 @@ Make a closed box that stands on z = 0, with its middle over the origin. Returns
 length, width, height: its sides along x, y and z, metres.)");
   module.def(
       "outline_model",
-      [](const py::object& outline, double rear, double front) {
-        return outline_model(outline_of(outline, "outline"), rear, front);
+      [](const py::kwargs& given) {
+        return outline_model(outline_of(given["outline"], "outline"),
+                             argument<double>(given, "rear"), argument<double>(given, "front"));
       },
-      "outline"_a, "rear"_a, "front"_a,
-      R"(outline_model(outline, rear, front)
+      R"(outline_model(outline: Outline, rear: Number, front: Number)
 --
 
 Make a closed solid with this cross-section, such as a load or a clearance gauge. Returns a Model.
@@ -248,23 +197,8 @@ Make a closed solid with this cross-section, such as a load or a clearance gauge
 outline: corners y, z of a simple polygon, n x 2, metres; y is to the left, z up.
 rear, front: where the solid begins and ends along x, metres.)");
   module.def(
-      "read_outline",
-      [](const py::object& path, bool mirror, const UnitArgument& unit,
-         const py::object& messages) {
-        const OutlineOptions options{.mirror = mirror, .unit = file_unit(unit)};
-        const auto corners = read_noting(messages, [&, file = path_of(path)](auto* noted) {
-          return read_outline(file, options, noted);
-        });
-        py::array_t<double> array({static_cast<py::ssize_t>(corners.size()), py::ssize_t{2}});
-        double* at = array.mutable_data();
-        for (const auto& [y, z] : corners) {
-          *at++ = y;
-          *at++ = z;
-        }
-        return array;
-      },
-      "path"_a, py::kw_only(), "mirror"_a = false, "unit"_a = 0.0, "messages"_a = py::none(),
-      R"(read_outline(path, *, mirror=False, unit=0.0, messages=None)
+      "read_outline", &read_outline,
+      R"(read_outline(path: Path, *, mirror: Flag = False, unit: Unit = 0.0, messages: Notes = None)
 --
 
 Read an outline from a file of text, two numbers in each line. Returns its corners y, z in metres.
@@ -273,15 +207,37 @@ path: the file, with the names y,z in its first line or none.
 mirror: the file has height,half_width of one half of a symmetric outline.
 unit: unit of the file: 'mm', 'cm', 'm', 'in', 'ift', 'us-ft' or its length in metres; 0: metres.
 messages: a list to which a warning of half an outline is appended.)");
-}
+  module.def("read_model_points", &read_model_points,
+             ("read_model_points(path: Path, *, " + signature_of(kModelFields) +
+              R"DOC(, environment_unit: EnvironmentUnit = None, messages: Notes = None)
+--
 
-}  // namespace
+Read a model: points of a scan's format, or a mesh (STL, OBJ, PLY with faces, OFF).
 
-void add_model(py::module_& module) {
-  add_shape(module);
-  add_made_models(module);
-  add_read_model_points(module);
-  add_read_model(module);
+The surface of a mesh is sampled to points. Returns n x 3 float64, metres, in the model's frame.
+read_model() also keeps how far the surface may be from the points, so that answers say it.
+
+path: the file.
+)DOC" + lines_of(kModelFields) +
+              R"DOC(environment_unit: the environment's unit, into which a known unit is converted:
+    store.metres_per_unit(), store.length_unit(), or a name. None: the metre; a file that names
+    another unit is refused then.
+messages: a list to which notes and warnings are appended.)DOC")
+                 .c_str());
+  module.def("read_model", &read_model,
+             ("read_model(path: Path, model_as: OneOf('auto', 'surface', 'solid', 'points') = "
+              "'auto', *, " +
+              signature_of(kModelFields) +
+              R"DOC(, environment_unit: EnvironmentUnit = None, messages: Notes = None)
+--
+
+Read a model, to be searched as it is. Returns a Model.
+
+path: the file.
+)DOC" + lines_of(kKindOfModel) +
+              lines_of(kModelFields) +
+              R"DOC(environment_unit, messages: as read_model_points() takes them.)DOC")
+                 .c_str());
 }
 
 }  // namespace clearway::python

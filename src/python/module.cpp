@@ -15,18 +15,11 @@ PYBIND11_MODULE(_clearway, module) {
   add_model(module);
   add_store(module);
   add_inputs(module);
-  add_reports(module);
   add_bodies(module);
   add_search(module);
   add_results(module);
-  add_session(module);
-  add_merge(module);
-  add_ledger(module);
   add_findings(module);
   add_section(module);
-  add_smooth(module);
-  add_shifts(module);
-  add_report_page(module);
 }
 
 }  // namespace

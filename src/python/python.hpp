@@ -1,6 +1,7 @@
 #pragma once
 
-#include <pybind11/pybind11.h>
+#include <pybind11/numpy.h>
+#include <pybind11/stl.h>
 
 #include <cstddef>
 #include <exception>
@@ -72,23 +73,16 @@ const char* name_in(const Table& table, Value value) {
   return "unknown";
 }
 
-void add_watch();                           // watch.cpp
-void add_errors(py::module_& module);       // errors.cpp
-void add_values(py::module_& module);       // values.cpp
-void add_model(py::module_& module);        // model.cpp
-void add_reports(py::module_& module);      // reports.cpp
-void add_store(py::module_& module);        // search.cpp, before all that takes a store
-void add_inputs(py::module_& module);       // inputs.cpp
-void add_search(py::module_& module);       // search.cpp
-void add_merge(py::module_& module);        // merge.cpp
-void add_bodies(py::module_& module);       // bodies.cpp
-void add_results(py::module_& module);      // results.cpp
-void add_session(py::module_& module);      // session.cpp, after what its answers have
-void add_findings(py::module_& module);     // findings.cpp
-void add_ledger(py::module_& module);       // ledger.cpp
-void add_section(py::module_& module);      // section.cpp
-void add_smooth(py::module_& module);       // smooth.cpp
-void add_shifts(py::module_& module);       // shifts.cpp
-void add_report_page(py::module_& module);  // report_page.cpp
+void add_watch();                        // watch.cpp
+void add_errors(py::module_& module);    // errors.cpp
+void add_values(py::module_& module);    // values.cpp
+void add_model(py::module_& module);     // model.cpp
+void add_store(py::module_& module);     // search.cpp
+void add_inputs(py::module_& module);    // inputs.cpp
+void add_bodies(py::module_& module);    // bodies.cpp
+void add_search(py::module_& module);    // search.cpp
+void add_results(py::module_& module);   // results.cpp, after what its answers have
+void add_findings(py::module_& module);  // findings.cpp
+void add_section(py::module_& module);   // section.cpp
 
 }  // namespace clearway::python

@@ -7,8 +7,10 @@
 #include "clearway/found_place.hpp"
 #include "clearway/model.hpp"
 #include "clearway/trajectory.hpp"
+#include "core/describe/answer.hpp"
 #include "core/util/format.hpp"
 #include "python/arrays.hpp"
+#include "python/binding.hpp"
 #include "python/watch.hpp"
 
 namespace clearway::python {
@@ -22,120 +24,84 @@ py::dict numbers_of(const Message& message) {
   return numbers;
 }
 
-py::list path_stretches_of(const Message& message) {
-  py::list stretches;
-  for (const PoseRange& stretch : message.stretches) {
-    stretches.append(py::make_tuple(stretch.first, stretch.last));
-  }
-  return stretches;
-}
-
 const char* severity_of(const Message& message) {
   return message.severity == Severity::kWarning ? "warning" : "note";
 }
 
+constexpr std::tuple kMessageFacts{
+    fact<&Message::code>("The cause of a warning in one word, such as 'no-poses'; '' for a note."),
+    fact<&Message::text>("The text, in one or more sentences."),
+    fact<&Message::body>("The name of the one body that it is about; '' where it is about several "
+                         "or all."),
+    fact<&Message::stretches>("The stretches of the path that the message is about: a list of "
+                              "pairs of the first and the last pose, ascending. Empty for a "
+                              "message about the whole question.")};
+
+constexpr std::tuple kProgressFacts{
+    fact<&KeptProgress::stage>("The name of the stage, for people."),
+    fact<&KeptProgress::done>("How much of the stage is done."),
+    fact<&KeptProgress::total>("How much the stage has in all; 0 where that is not known."),
+    fact<&KeptProgress::unit>("What done and total count, such as 'points'."),
+    fact<&KeptProgress::finished>("Whether the stage has ended.")};
+
 void add_messages(py::module_& module) {
-  py::class_<Message>(module, "Message", "A note or a warning about a call, for people to read.")
-      .def_property_readonly("severity", severity_of, "'note' or 'warning'.")
-      .def_property_readonly(
-          "code", [](const Message& m) { return text(m.code); },
-          "The cause of a warning in one word, such as 'no-poses'; '' for a note.")
-      .def_property_readonly(
-          "text", [](const Message& m) { return text(m.text); },
-          "The text, in one or more sentences.")
+  auto message = add_class<Message>(
+      module, "Message", "A note or a warning about a call, for people to read.", kMessageFacts);
+  message.def_property_readonly("severity", severity_of, "'note' or 'warning'.")
       .def_property_readonly("numbers", numbers_of,
                              "The numbers that the text gives, for programs: a dict by name.")
-      .def_property_readonly(
-          "body", [](const Message& m) { return text(m.body); },
-          "The name of the one body that it is about; '' where it is about several or all.")
-      .def_property_readonly("stretches", path_stretches_of,
-                             "The stretches of the path that the message is about: a list of pairs "
-                             "of the first and the last pose, ascending. Empty for a message about "
-                             "the whole question.")
-      .def("__str__", [](const Message& m) { return text(m.text); })
-      .def("__repr__", [](const Message& m) {
-        return text(std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code +
-                    ": " + m.text + ">");
-      });
-  py::class_<KeptProgress>(module, "ProgressUpdate", "How far a stage of a long call is.")
-      .def_property_readonly(
-          "stage", [](const KeptProgress& p) { return text(p.stage); },
-          "The name of the stage, for people.")
-      .def_readonly("done", &KeptProgress::done, "How much of the stage is done.")
-      .def_readonly("total", &KeptProgress::total,
-                    "How much the stage has in all; 0 where that is not known.")
-      .def_property_readonly(
-          "unit", [](const KeptProgress& p) { return text(p.unit); },
-          "What done and total count, such as 'points'.")
-      .def_readonly("finished", &KeptProgress::finished, "Whether the stage has ended.")
-      .def("__repr__", [](const KeptProgress& p) {
-        return text("<" + p.stage + ": " + std::to_string(p.done) +
-                    (p.total > 0 ? " of " + std::to_string(p.total) : "") + " " + p.unit + ">");
-      });
+      .def("__str__", [](const Message& m) { return text(m.text); });
+  add_repr(message, [](const Message& m) {
+    return std::string("<") + severity_of(m) + (m.code.empty() ? "" : " ") + m.code + ": " +
+           m.text + ">";
+  });
+  auto progress = add_class<KeptProgress>(module, "ProgressUpdate",
+                                          "How far a stage of a long call is.", kProgressFacts);
+  add_repr(progress, [](const KeptProgress& p) {
+    return "<" + p.stage + ": " + std::to_string(p.done) +
+           (p.total > 0 ? " of " + std::to_string(p.total) : "") + " " + p.unit + ">";
+  });
 }
 
+constexpr std::tuple kBoxFacts{fact<&Box::lo>("The least coordinates: 3 float64, metres."),
+                               fact<&Box::hi>("The greatest coordinates: 3 float64, metres.")};
+
 void add_places(py::module_& module) {
-  py::class_<Box>(module, "Box", "A box along the axes, which includes its borders; in metres.")
-      .def(py::init([](const py::object& lo, const py::object& hi) {
-             return Box{point_of(lo, "lo"), point_of(hi, "hi")};
-           }),
-           py::arg("lo"), py::arg("hi"),
-           R"(__init__(self, lo, hi)
+  auto box = add_class<Box>(
+      module, "Box", "A box along the axes, which includes its borders; in metres.", kBoxFacts);
+  box.def(py::init([](const py::kwargs& given) {
+            return Box{point_of(given["lo"], "lo"), point_of(given["hi"], "hi")};
+          }),
+          R"(__init__(self, lo: Array, hi: Array)
 --
 
 Make a box of two corners.
 
 lo: the least coordinates: 3 numbers, metres.
 hi: the greatest coordinates: 3 numbers, metres.)")
-      .def_property_readonly(
-          "lo", [](const Box& box) { return to_array(box.lo); },
-          "The least coordinates: 3 float64, metres.")
-      .def_property_readonly(
-          "hi", [](const Box& box) { return to_array(box.hi); },
-          "The greatest coordinates: 3 float64, metres.")
       .def(
-          "__eq__", [](const Box& a, const Box& b) { return a == b; }, py::is_operator())
-      .def("__repr__", [](const Box& box) {
-        const auto list = [](const Vec3& p) { return py::str(to_array(p).attr("tolist")()); };
-        return py::str("Box(lo={}, hi={})").format(list(box.lo), list(box.hi));
-      });
-  py::class_<FoundPlace>(module, "FoundPlace",
-                         "A point of the environment that was found, and the pose at which it was.")
-      .def_readonly("source", &FoundPlace::source,
-                    "The index of the point in the order of the scans.")
-      .def_readonly("pose", &FoundPlace::pose, "The index of the pose, from 0.")
-      .def_property_readonly(
-          "xyz", [](const FoundPlace& p) { return to_array(p.xyz); },
-          "The coordinates of the point: 3 float64, metres.")
-      .def_readonly("distance", &FoundPlace::distance,
-                    "The distance between the point and the model at this pose, metres; 0 where "
-                    "distances were not asked for.")
-      .def_readonly("point_class", &FoundPlace::point_class,
-                    "The class of the point, as the scans have it. None unless they have classes.")
-      .def("__repr__", [](const FoundPlace& p) {
-        return py::str("<point {} at pose {}, {} m>").format(p.source, p.pose, p.distance);
-      });
+          "__eq__", [](const Box& a, const Box& b) { return a == b; }, py::is_operator());
+  add_repr(box, [](const Box& b) {
+    const auto list = [](const Vec3& p) { return py::str(to_array(p).attr("tolist")()); };
+    return py::str("Box(lo={}, hi={})").format(list(b.lo), list(b.hi));
+  });
+  auto place = add_class<FoundPlace>(
+      module, "FoundPlace",
+      "A point of the environment that was found, and the pose at which it was.", kFoundPlaceFacts);
+  add_repr(place, [](const FoundPlace& p) {
+    return py::str("<point {} at pose {}, {} m>").format(p.source, p.pose, p.distance);
+  });
 }
 
 }  // namespace
 
-py::list to_list(const std::vector<Message>& messages) {
-  py::list list;
-  append_to(list, messages);
-  return list;
+std::vector<Message> messages_of(const py::kwargs& given, const char* name) {
+  const py::object list = given[name];
+  return list.is_none() ? std::vector<Message>() : list.cast<std::vector<Message>>();
 }
 
-std::vector<Message> messages_of(const py::handle& object) {
-  std::vector<Message> messages;
-  if (object.is_none()) return messages;
-  for (const py::handle message : py::iter(object)) {
-    if (!py::isinstance<Message>(message)) throw py::type_error("expected a list of Message");
-    messages.push_back(message.cast<Message>());
-  }
-  return messages;
-}
-
-void append_to(const py::handle& list, const std::vector<Message>& messages) {
+void append_to(const py::kwargs& given, const std::vector<Message>& messages) {
+  const py::object list = given["messages"];
   if (list.is_none()) return;
   for (const Message& message : messages) list.attr("append")(message);
 }
@@ -155,16 +121,17 @@ FileUnit file_unit(const UnitArgument& unit) {
   return name != nullptr ? FileUnit::named(*name) : FileUnit(std::get<double>(unit));
 }
 
-EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit) {
-  if (!unit || *unit == UnitArgument("unknown")) return {.is_assumed = true};
+EnvironmentUnit environment_unit_of(const std::optional<UnitArgument>& unit) {
+  if (!unit || *unit == UnitArgument("unknown")) {
+    return {.is_assumed = true, .is_given = unit.has_value()};
+  }
   if (*unit == UnitArgument("degree")) return {};
   return {.metres = file_unit(*unit).metres()};
 }
 
-void check_unit_is_given(const std::filesystem::path& file,
-                         const EnvironmentUnitArgument& environment_unit, const FileUnit& of_file,
-                         std::vector<Message>& noted) {
-  if (environment_unit) return;
+void check_unit_is_given(const std::filesystem::path& file, const EnvironmentUnit& environment,
+                         const FileUnit& of_file, std::vector<Message>& noted) {
+  if (environment.is_given) return;
   const auto is_assumed = [](const Message& message) { return message.code == "unit-assumed"; };
   const auto found = std::ranges::find_if(noted, is_assumed);
   if (found == noted.end()) return;

@@ -13,25 +13,23 @@
 /// Small values of the library in Python, and how they are shown.
 namespace clearway::python {
 
-py::list to_list(const std::vector<Message>& messages);
+/// The messages of the argument of this name, which the library gave; none for None.
+std::vector<Message> messages_of(const py::kwargs& given, const char* name);
 
-/// The messages of a Python list that the library gave; none for None.
-std::vector<Message> messages_of(const py::handle& object);
-
-/// Appends the messages to a list; does nothing for None.
-void append_to(const py::handle& list, const std::vector<Message>& messages);
+/// Appends the messages to the argument `messages`, a list; does nothing for None.
+void append_to(const py::kwargs& given, const std::vector<Message>& messages);
 
 /// Runs a function that reads something and notes messages, while other Python threads may run too.
-/// The messages are appended also where the function throws.
+/// The messages are appended to the argument `messages`, also where the function throws.
 template <typename Read>
-auto read_noting(const py::object& messages, Read call) {
+auto read_noting(const py::kwargs& given, Read call) {
   std::vector<Message> noted;
   try {
     auto value = without_gil([&] { return call(&noted); });
-    append_to(messages, noted);
+    append_to(given, noted);
     return value;
   } catch (...) {
-    append_to(messages, noted);
+    append_to(given, noted);
     throw;
   }
 }
@@ -42,24 +40,31 @@ using UnitArgument = std::variant<double, std::string>;
 /// The unit of a file. Throws UsageError where the name is not that of a unit.
 FileUnit file_unit(const UnitArgument& unit);
 
-/// The argument environment_unit, which may be given as Store.length_unit() returns it. None: the
-/// caller has not said it.
-using EnvironmentUnitArgument = std::optional<UnitArgument>;
-
 /// The unit of an environment.
 struct EnvironmentUnit {
   double metres = 1;
   bool is_assumed = false;  ///< whether the environment names no unit, or none was given
+  bool is_given = true;
 };
-EnvironmentUnit environment_unit_of(const EnvironmentUnitArgument& unit);
+/// unit: may be given as Store.length_unit() returns it; none: the caller has not said it.
+EnvironmentUnit environment_unit_of(const std::optional<UnitArgument>& unit);
+
+/// Puts the argument `environment_unit` into options, and returns it.
+template <typename Options>
+EnvironmentUnit take_environment_unit(const py::kwargs& given, Options& options) {
+  const EnvironmentUnit unit =
+      environment_unit_of(given["environment_unit"].cast<std::optional<UnitArgument>>());
+  options.environment_unit = unit.metres;
+  options.environment_unit_is_assumed = unit.is_assumed;
+  return unit;
+}
 
 /// Throws UsageError where `file`, which was read, names a unit that is not the metre, since
-/// nothing says into which unit it is to be converted, unless environment_unit was given. of_file:
-/// the argument that names the unit of the file, which overrides the file's own. noted: the
-/// messages of reading it, from which those about the assumed unit are taken.
-void check_unit_is_given(const std::filesystem::path& file,
-                         const EnvironmentUnitArgument& environment_unit, const FileUnit& of_file,
-                         std::vector<Message>& noted);
+/// nothing says into which unit it is to be converted, unless the environment's unit was given.
+/// of_file: the argument that names the unit of the file, which overrides the file's own. noted:
+/// the messages of reading it, from which those about the assumed unit are taken.
+void check_unit_is_given(const std::filesystem::path& file, const EnvironmentUnit& environment,
+                         const FileUnit& of_file, std::vector<Message>& noted);
 
 /// The warnings in words, for example "; 2 warnings: no-poses, steps"; empty where there are none.
 std::string warning_words(const std::vector<Message>& warnings);

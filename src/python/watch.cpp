@@ -73,9 +73,6 @@ class Joined {
 
 }  // namespace
 
-Watch::Watch(py::object progress, py::object message, py::object stop)
-    : progress_(std::move(progress)), message_(std::move(message)), stop_(std::move(stop)) {}
-
 void Watch::keep(const ProgressUpdate& update) {
   const std::lock_guard lock(mutex_);
   // While a stage is not finished, a new update takes the place of the one before it.

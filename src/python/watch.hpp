@@ -31,20 +31,22 @@ struct KeptProgress {
 /// exception leaves run().
 class Watch {
  public:
-  /// progress, message: callables, or None. stop: None, or an object with is_set(), such as a
-  /// threading.Event.
-  Watch(py::object progress, py::object message, py::object stop);
-  Watch(const Watch&) = delete;
-  Watch& operator=(const Watch&) = delete;
-
+  /// given: the arguments of the call, of which `progress` and `message` are callables or None, and
+  /// `stop` is None or an object with is_set(), such as a threading.Event. Not every call has
+  /// `message`. options: get what watches the call.
   template <typename Options>
-  void attach(Options& options) {
+  Watch(const py::kwargs& given, Options& options)
+      : progress_(given["progress"]),
+        message_(given.contains("message") ? py::object(given["message"]) : py::none()),
+        stop_(given["stop"]) {
     options.progress = [this](const ProgressUpdate& update) { keep(update); };
     options.stop = &stopped_;
     if constexpr (requires { options.message; }) {
       options.message = [this](const Message& message) { keep(message); };
     }
   }
+  Watch(const Watch&) = delete;
+  Watch& operator=(const Watch&) = delete;
 
   /// Runs `work` on the other thread and returns what it returns, or throws what it throws. `work`
   /// must not touch Python.

@@ -3,9 +3,8 @@
 The compiled part describes a call that does not fit by listing the C++ types of all parameters,
 which names no culprit. So every public call, constructor and property is wrapped here: it takes
 arguments as a Python function of its signature does, converts numbers of any type, and says which
-argument is wrong. The compiled part describes for each call how the parameters are checked that are
-members of its options; every other parameter of one name means the same in every call, so that one
-table serves them all. What remains to be said of values and arrays, the library says.
+argument is wrong. The signatures of the compiled part name the check of each parameter, and it gets
+all of them by name. What remains to be said of values and arrays, the library says.
 """
 
 import difflib
@@ -32,37 +31,31 @@ def _found(value):
     return "found " + reprlib.repr(value)
 
 
-def _number(name, value):
+@_of_type("float")
+def _finite(name, value):
     try:
         if isinstance(value, (bool, str, bytes)):
             raise TypeError
-        return float(value)  # numpy scalars of any width, Decimal and Fraction too
+        number = float(value)  # numpy scalars of any width, Decimal and Fraction too
     except (TypeError, ValueError, OverflowError):
         raise TypeError(f"{name}: expected a number, {_found(value)}") from None
-
-
-@_of_type("float")
-def _finite(name, value):
-    number = _number(name, value)
     if not math.isfinite(number):
         raise UsageError(f"{name}: expected a finite number, {_found(value)}")
     return number
 
 
-@_of_type("float")
-def _at_least_0(name, value):
-    number = _finite(name, value)
-    if number < 0:
-        raise UsageError(f"{name}: expected 0 or a number above it, {_found(value)}")
-    return number
+def _limited(words, fits):
+    @_of_type("float")
+    def check(name, value):
+        number = _finite(name, value)
+        if not fits(number):
+            raise UsageError(f"{name}: expected {words}, {_found(value)}")
+        return number
+    return check
 
 
-@_of_type("float")
-def _above_0(name, value):
-    number = _finite(name, value)
-    if not number > 0:
-        raise UsageError(f"{name}: expected a number above 0, {_found(value)}")
-    return number
+_at_least_0 = _limited("0 or a number above it", lambda number: number >= 0)
+_above_0 = _limited("a number above 0", lambda number: number > 0)
 
 
 def _or_name(check):
@@ -178,89 +171,41 @@ def _one_of(*names):
     return _of_type(f"Literal{list(names)}")(lambda name, value: _text(name, value))
 
 
-def _described(kind, *limits):
-    """The check of an argument that the compiled part describes, from the list of its fields."""
-    if kind == "flag":
-        return _flag
-    if kind == "choice":
-        return _one_of(*limits[0])
-    if kind == "number":
-        return {"any": _finite, "from 0": _at_least_0, "above 0": _above_0}[limits[0]]
-    if kind == "optional":
-        return _or_none(_described("number", *limits))
-    if kind == "whole":
-        return _whole(limits[0])
-    if kind == "text":
-        return _text
-    if kind == "path":
-        return _path
-    if kind == "unit":
-        return _or_name(_at_least_0)
-    if kind == "vector":
-        return _of_type("Sequence[float]")(_tuple_of(3, _finite, "three numbers x, y and z"))
-    if kind == "boxes":
-        return _each(_kind(_clearway.Box))
-    return _each(_described(*limits[0]))
-
-
-_messages = _each(_kind(_clearway.Message))
-_model = _of_type("ArrayLike | Model")(lambda _name, value: value)
-
-_DESCRIBED = {call: {name: _described(*check) for name, check in checks.items()}
-              for call, checks in _clearway._checks.items()}
-_CHECKS = {
-    **{name: check for checks in _DESCRIBED.values() for name, check in checks.items()},
-    **dict.fromkeys(("step", "rail_distance", "length", "width", "corner_radius", "track"),
-                    _above_0),
-    "environment_unit": _or_name(_above_0),
-    **dict.fromkeys(("max_gap", "split", "every", "band"), _at_least_0),
-    **dict.fromkeys(("at", "chainage_start", "station_from",
-                     "station_to", "height", "rear", "front", "base"), _finite),
-    **dict.fromkeys(("max_points", "min_points"), _whole(2**64 - 1)),
-    **dict.fromkeys(("reverse", "mirror"), _flag),
-    "cant": _one_of("file", "none", "center", "inside-rail", "outside-rail", "left-rail",
-                    "right-rail"),
-    "order": _one_of("ne", "en"),
-    "table": _one_of("bands", "stations", "boxes", "cells", "bin-cells", "unknown-cells",
-                     "unknown-bin-cells"),
-    **dict.fromkeys(("name", "title", "project", "client", "author", "date", "result_name",
-                     "environment_name", "model_name", "trajectory_name", "alignment", "ledger_name",
-                     "environment_crs"), _text),
-    **dict.fromkeys(("path", "file", "output", "ledger"), _path),
-    **dict.fromkeys(("inputs", "parts"), _paths),
-    **dict.fromkeys(("poses", "points", "vertices", "triangles", "path_pose", "lo", "hi",
-                     "outline"), _anything),
-    "model": _model,
-    "towed_by": _of_type('Body | Literal["path"]')(lambda _name, value: value),
-    "progress": _of_type("_Progress")(lambda name, value: _callable(name, value)),
-    "message": _of_type("_Tell")(lambda name, value: _callable(name, value)),
-    **dict.fromkeys(("warnings", "input_warnings"), _of_type("Iterable[Message]")(_messages)),
-    "stop": _of_type("_Stop")(_having("is_set")),
-    "messages": _of_type("list[Message]")(_having("append")),
-    "classes": _each(_finite),
-    "shard": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
-    "window": _tuple_of(4, _finite, "four numbers, y from and to, and z from and to"),
-    "pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
-    "lateral": _of_type("Sequence[float]")(_tuple_of(
+# The checks by the names that the signatures of the compiled part have for them.
+_KINDS = {
+    **{name: _kind(kind) for name, kind in vars(_clearway).items() if isinstance(kind, type)},
+    "Flag": _flag,
+    "Text": _text,
+    "AxisName": _of_type("_Axis")(lambda name, value: _text(name, value)),
+    "OneOf": _one_of,
+    "Number": _finite,
+    "From0": _at_least_0,
+    "Above0": _above_0,
+    "Whole": _whole,
+    "Int": _whole(2**31 - 1),
+    "Count": _whole(2**64 - 1),
+    "Unit": _or_name(_at_least_0),
+    "EnvironmentUnit": _or_name(_above_0),
+    "Vector": _of_type("Sequence[float]")(_tuple_of(3, _finite, "three numbers x, y and z")),
+    "Window": _tuple_of(4, _finite, "four numbers, y from and to, and z from and to"),
+    "Pivots": _tuple_of(2, _finite, "two numbers, the front pivot and the rear one"),
+    "Lateral": _of_type("Sequence[float]")(_tuple_of(
         2, _finite, "two numbers of metres, the shift farthest to the right and to the left")),
-    "bodies": _each(_kind(_clearway.Body)),
-    "labels": _kind(_clearway.PoseLabels),
-    "shifts": _kind(_clearway.ShiftTable),
-    **dict.fromkeys(("store", "ground"), _kind(_clearway.Store)),
-    "result": _kind(_clearway.Result),
-    "query": _kind(_clearway.Query),
-    "section": _kind(_clearway.Section),
+    "Part": _tuple_of(2, _whole(2**32 - 1), "a pair (i, n)"),
+    "Path": _path,
+    "Paths": _paths,
+    "OrNone": _or_none,
+    "Each": _each,
+    "Array": _anything,
+    "Outline": _of_type("_Doubles | Sequence[Sequence[float]]")(lambda _name, value: value),
+    "ArrayOrModel": _of_type("ArrayLike | Model")(lambda _name, value: value),
+    "Tower": _of_type('Body | Literal["path"]')(lambda _name, value: value),
+    "Progress": _of_type("_Progress")(lambda name, value: _callable(name, value)),
+    "Tell": _of_type("_Tell")(lambda name, value: _callable(name, value)),
+    "Stop": _of_type("_Stop")(_having("is_set")),
+    "Messages": _of_type("Iterable[Message]")(_each(_kind(_clearway.Message))),
+    "Notes": _of_type("list[Message]")(_having("append")),
 }
-# Poses, where elsewhere it is a file; a name, where elsewhere it is a length.
-_OF_CALL = {("follow", "path"): _anything, ("unsearched_stretches", "path"): _anything,
-            ("write_report", "ledger"): _kind(_clearway.Ledger),
-            ("read_alignment", "profile"): _text, ("box_model", "height"): _above_0,
-            ("Section.symmetric_width", "band"): _kind(_clearway.SectionBand)}
-
-
-def _check_of(call, name):
-    return (_OF_CALL.get((call, name)) or _DESCRIBED.get(call, {}).get(name)
-            or _CHECKS.get(name, _anything))
 
 
 # What the command line calls an argument that is named otherwise here.
@@ -278,17 +223,19 @@ def _refuse_unknown(call, signature, named):
                         + (f"; did you mean '{near[0]}'?" if near else ""))
 
 
-def _signature_of(function):
-    """As the docstring of the compiled function begins; without one it takes nothing."""
+def signature_of(function):
+    """As the docstring of the compiled function begins, with a check as the annotation of each
+    parameter; without one it takes nothing."""
     text = getattr(function, "__text_signature__", None) or "(self)"
-    scope = {}
-    exec(f"def signature{text}: pass", scope)  # our own text, which holds literals alone
+    scope = dict(_KINDS)
+    exec(f"def signature{text}: pass", scope)  # our own text, which holds literals and checks alone
     return inspect.signature(scope["signature"])
 
 
 def checked(call, function):
     """The compiled function, which says which argument is wrong. call: its name for people."""
-    signature = _signature_of(function)
+    signature = signature_of(function)
+    checks = {name: parameter for name, parameter in signature.parameters.items() if name != "self"}
 
     @functools.wraps(function)
     def wrapped(*args, **named):
@@ -297,20 +244,28 @@ def checked(call, function):
             bound = signature.bind(*args, **named)
         except TypeError as error:
             raise TypeError(f"{call}(): {error}") from None
-        for name, value in bound.arguments.items():
-            default = signature.parameters[name].default
-            if name == "self" or (value is None and default is None):
-                continue
-            bound.arguments[name] = _check_of(call, name)(name, value)
-        return function(*bound.args, **bound.kwargs)
+        given = bound.arguments
+        for name, parameter in checks.items():
+            if name not in given:
+                given[name] = parameter.default
+            elif given[name] is not None or parameter.default is not None:
+                given[name] = parameter.annotation(name, given[name])
+        return function(*(given.pop("self"),) if "self" in given else (), **given)
 
-    wrapped.__signature__ = signature
+    wrapped.__signature__ = signature.replace(parameters=[
+        parameter.replace(annotation=parameter.empty) for parameter in signature.parameters.values()])
     return wrapped
 
 
-def _checked_property(owner, name, compiled):
+# A property is checked as the argument of a Query with its name, also that of a Body.
+_PROPERTIES = signature_of(_clearway.Query.__init__).parameters
+
+
+def _checked_property(name, compiled):
+    check = _PROPERTIES[name].annotation
+
     def assign(self, value):
-        compiled.fset(self, _check_of(owner, name)(name, value))
+        compiled.fset(self, check(name, value))
     return property(compiled.fget, assign, doc=compiled.__doc__)
 
 
@@ -319,7 +274,7 @@ def check_class(made):
     for name, member in list(vars(made).items()):
         if isinstance(member, property):
             if member.fset is not None:
-                setattr(made, name, _checked_property(made.__name__, name, member))
+                setattr(made, name, _checked_property(name, member))
         elif hasattr(member, "__objclass__"):
             continue  # of a class whose objects only the module makes
         elif name == "__init__" or (callable(member) and not name.startswith("_")):

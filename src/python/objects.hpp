@@ -1,22 +1,24 @@
 #pragma once
 
-#include <pybind11/numpy.h>
-
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"
 #include "clearway/follow.hpp"
-#include "clearway/progress.hpp"
+#include "clearway/model.hpp"
 #include "clearway/query.hpp"
-#include "clearway/search.hpp"
 #include "clearway/store.hpp"
 #include "python/arrays.hpp"
+#include "python/python.hpp"
+#include "python/values.hpp"
 
+/// What several calls take: stores, models, bodies and queries as Python objects.
 namespace clearway::python {
 
 /// A store that several Python threads share. Calls on it take turns, because a store remembers
@@ -44,6 +46,16 @@ auto in_turn(SharedStore& shared, StopFlag stop, Call call) {
   return call(std::as_const(shared.store));
 }
 
+/// A Model is returned as it is, and anything else as points_array() converts it.
+py::object model_object(const py::handle& object);
+
+/// A copy of a model. object: one that model_object() returned. Throws InputError for numbers that
+/// are not finite.
+Model model_of(const py::object& object);
+
+/// The size of a model in words, such as "12 model points" or "12 model triangles".
+std::string model_words(const py::object& object);
+
 /// How follow() moves a body, for the bodies that it tows.
 struct Motion {
   std::string name;
@@ -66,6 +78,11 @@ struct PlacedBody : Body {
 /// The bodies of a query along this path. Throws UsageError where a body was placed on another
 /// path, or has no path_pose and a number of poses that differs from the path's.
 std::vector<Body> bodies_on(const std::vector<PlacedBody>& bodies, const std::vector<Pose>& path);
+
+/// The argument `bodies` on this path.
+inline std::vector<Body> bodies_on(const py::kwargs& given, const std::vector<Pose>& path) {
+  return bodies_on(given["bodies"].cast<std::vector<PlacedBody>>(), path);
+}
 
 /// A query whose model and poses are Python objects.
 struct ArrayQuery {
