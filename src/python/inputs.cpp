@@ -5,6 +5,7 @@
 
 #include "clearway/alignment.hpp"
 #include "clearway/convert.hpp"
+#include "clearway/error.hpp"
 #include "clearway/line.hpp"
 #include "clearway/smooth.hpp"
 #include "core/describe/convert.hpp"
@@ -146,7 +147,11 @@ SmoothPath smooth_trajectory(const py::kwargs& given) {
   set_fields(kSmoothFields, given, options);
   const std::vector<Pose> path = poses_of(given);
   std::optional<Box> box;
-  if (!given["model"].is_none()) box = box_of(model_of(given["model"]).vertices);
+  if (!given["model"].is_none()) {
+    const Model model = model_of(given["model"]);
+    if (model.empty()) throw InputError("model: has no points");
+    box = box_of(model.vertices);
+  }
   Watch watch(given, options);
   return watch.run(
       [&] { return smooth_trajectory(path, options, box, options.progress, options.stop); });

@@ -80,6 +80,7 @@ class ShiftTest(SceneTest):
         for kind, words, of, within, model in (
                 (clearway.UsageError, "expected the model", poses, 0.05, None),
                 (clearway.UsageError, "within", poses, -1, self.model),
+                (clearway.InputError, "model: has no points", poses, 0.05, []),
                 (clearway.InputError, "from pose 24 to pose 25", jump, 0.05, self.model)):
             with self.assertRaisesRegex(kind, words):
                 clearway.smooth_trajectory(of, within, model=model)
