@@ -22,7 +22,6 @@
 #include "clearway/vec3.hpp"
 #include "core/describe/fact.hpp"
 #include "core/describe/field.hpp"
-#include "core/describe/finding.hpp"
 #include "python/arrays.hpp"
 #include "python/python.hpp"
 #include "python/values.hpp"

@@ -1,11 +1,8 @@
 #include "clearway/model.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "clearway/error.hpp"

@@ -95,11 +95,6 @@ hi: the greatest coordinates: 3 numbers, metres.)")
 
 }  // namespace
 
-std::vector<Message> messages_of(const py::kwargs& given, const char* name) {
-  const py::object list = given[name];
-  return list.is_none() ? std::vector<Message>() : list.cast<std::vector<Message>>();
-}
-
 void append_to(const py::kwargs& given, const std::vector<Message>& messages) {
   const py::object list = given["messages"];
   if (list.is_none()) return;

@@ -5,16 +5,12 @@
 #include <variant>
 #include <vector>
 
-#include "clearway/box.hpp"
 #include "clearway/file_unit.hpp"
 #include "clearway/progress.hpp"
 #include "python/python.hpp"
 
 /// Small values of the library in Python, and how they are shown.
 namespace clearway::python {
-
-/// The messages of the argument of this name, which the library gave; none for None.
-std::vector<Message> messages_of(const py::kwargs& given, const char* name);
 
 /// Appends the messages to the argument `messages`, a list; does nothing for None.
 void append_to(const py::kwargs& given, const std::vector<Message>& messages);

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
-#include <type_traits>
 
 namespace clearway {
 
@@ -31,15 +30,11 @@ template <auto kMember>
 struct Fact {
   static constexpr auto member = kMember;
   const char* doc;  ///< documentation in Python
-  const char* key = kNameOfMember<kMember>.data();
+  const char* key;  ///< name in Python
 };
 
 template <auto kMember>
-constexpr Fact<kMember> fact(const char* doc) {
-  return {doc};
-}
-template <auto kMember>
-constexpr Fact<kMember> fact(const char* doc, const char* key) {
+constexpr Fact<kMember> fact(const char* doc, const char* key = kNameOfMember<kMember>.data()) {
   return {doc, key};
 }
 
