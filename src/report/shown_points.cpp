@@ -127,13 +127,15 @@ class PointReader {
 
   /// Takes the rows up to these indices, which have the same last source. Returns their number.
   std::size_t look_up_to(std::size_t colliding_end, std::size_t measured_end) {
-    classify_colliding(colliding_end, measured_end);
-    classify_others(colliding_end, measured_end);
+    classify(colliding_end, measured_end);
     note_wanted(colliding_end);
     const std::size_t colliding = colliding_end - colliding_.begin();
     const std::size_t measured = measured_end - measured_.begin();
-    pick_colliding(colliding);
-    pick_others(measured);
+    pick(colliding_, class_of_colliding_, [&](std::size_t i) -> EvenPick& {
+      return picks_[picks_.size() > 1 ? (*selection_.conflict_of)[row_ + i] : 0];
+    });
+    row_ += colliding;
+    pick(measured_, class_of_other_, [&](std::size_t) -> EvenPick& { return other_pick_; });
     colliding_.look_up_to(colliding_end);
     measured_.look_up_to(measured_end);
     return colliding + measured;
@@ -145,36 +147,34 @@ class PointReader {
     return std::span(of.rows().source).subspan(of.begin(), end - of.begin());
   }
 
-  void classify_colliding(std::size_t colliding_end, std::size_t measured_end) {
-    const auto source = sources(colliding_, colliding_end);
-    const auto measured = sources(measured_, measured_end);
-    const auto distance = std::span(measured_.rows().distance).subspan(measured_.begin());
-    class_of_colliding_.resize(source.size());
-    in_pieces(source.size(), [&](std::size_t first, std::size_t end) {
-      auto at = std::ranges::lower_bound(measured, source[first]);
+  /// The classes of rows. class_at(i, there): the class of row i of `of`, where `there` is the
+  /// index of its source in `other`, or nothing where that lacks it.
+  template <typename ClassAt>
+  static std::vector<std::uint8_t> classes_of(std::span<const std::uint64_t> of,
+                                              std::span<const std::uint64_t> other,
+                                              const ClassAt& class_at) {
+    std::vector<std::uint8_t> out(of.size());
+    in_pieces(of.size(), [&](std::size_t first, std::size_t end) {
+      auto at = std::ranges::lower_bound(other, of[first]);
       for (std::size_t i = first; i < end; ++i) {
-        while (at != measured.end() && *at < source[i]) ++at;
-        const bool is_measured = at != measured.end() && *at == source[i];
-        class_of_colliding_[i] = class_of(
-            is_measured ? distance[static_cast<std::size_t>(at - measured.begin())] : radius_,
-            true);
+        while (at != other.end() && *at < of[i]) ++at;
+        const bool is_there = at != other.end() && *at == of[i];
+        out[i] = class_at(i, is_there ? std::optional(at - other.begin()) : std::nullopt);
       }
     });
+    return out;
   }
 
-  void classify_others(std::size_t colliding_end, std::size_t measured_end) {
-    const auto source = sources(measured_, measured_end);
+  void classify(std::size_t colliding_end, std::size_t measured_end) {
     const auto colliding = sources(colliding_, colliding_end);
-    const auto distance = std::span(measured_.rows().distance).subspan(measured_.begin());
-    class_of_other_.resize(source.size());
-    in_pieces(source.size(), [&](std::size_t first, std::size_t end) {
-      auto at = std::ranges::lower_bound(colliding, source[first]);
-      for (std::size_t i = first; i < end; ++i) {
-        while (at != colliding.end() && *at < source[i]) ++at;
-        const bool collides = at != colliding.end() && *at == source[i];
-        const bool is_shown = !collides && distance[i] < selection_.classes.back();
-        class_of_other_[i] = is_shown ? class_of(distance[i], false) : kNone;
-      }
+    const auto measured = sources(measured_, measured_end);
+    const double* const distance = measured_.rows().distance.data() + measured_.begin();
+    class_of_colliding_ = classes_of(colliding, measured, [&](std::size_t, auto there) {
+      return class_of(there ? distance[*there] : radius_, true);
+    });
+    class_of_other_ = classes_of(measured, colliding, [&](std::size_t i, auto there) {
+      const bool is_shown = !there && distance[i] < selection_.classes.back();
+      return is_shown ? class_of(distance[i], false) : kNone;
     });
   }
 
@@ -191,33 +191,19 @@ class PointReader {
     }
   }
 
-  void pick_colliding(std::size_t count) {
+  /// Adds points of rows that were not looked at. pick_of(i): what picks among those like row i.
+  template <typename Rows, typename PickOf>
+  void pick(const RowsAtHand<Rows>& rows, std::span<const std::uint8_t> classes,
+            const PickOf& pick_of) {
+    const auto xyz = std::span(rows.rows().xyz).subspan(rows.begin());
     picked_.clear();
-    for (std::size_t i = 0; i < count; ++i, ++row_) {
-      const std::uint8_t k = class_of_colliding_[i];
-      ++out_.of_class[k];
-      const std::size_t conflict = picks_.size() > 1 ? (*selection_.conflict_of)[row_] : 0;
-      if (!picks_[conflict].next()) continue;
-      ++out_.shown_class[k];
+    for (std::size_t i = 0; i < classes.size(); ++i) {
+      if (classes[i] == kNone) continue;
+      ++out_.of_class[classes[i]];
+      if (!pick_of(i).next()) continue;
+      ++out_.shown_class[classes[i]];
       picked_.push_back(static_cast<std::uint32_t>(i));
     }
-    add_picked(std::span(colliding_.rows().xyz).subspan(colliding_.begin()), class_of_colliding_);
-  }
-
-  void pick_others(std::size_t count) {
-    picked_.clear();
-    for (std::size_t i = 0; i < count; ++i) {
-      const std::uint8_t k = class_of_other_[i];
-      if (k == kNone) continue;
-      ++out_.of_class[k];
-      if (!other_pick_.next()) continue;
-      ++out_.shown_class[k];
-      picked_.push_back(static_cast<std::uint32_t>(i));
-    }
-    add_picked(std::span(measured_.rows().xyz).subspan(measured_.begin()), class_of_other_);
-  }
-
-  void add_picked(std::span<const Vec3> xyz, std::span<const std::uint8_t> classes) {
     const std::size_t before = out_.points.size();
     out_.points.resize(before + picked_.size());
     in_pieces(picked_.size(), [&](std::size_t first, std::size_t end) {
