@@ -10,7 +10,6 @@
 #include "core/geometry/solid_parts.hpp"
 #include "core/geometry/triangle.hpp"
 #include "core/query/body_numbers.hpp"
-#include "io/files/parallel_loop.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "report/shown_poses.hpp"
 
@@ -19,11 +18,6 @@ namespace {
 
 /// With more bodies than this, fewer poses are shown.
 constexpr std::size_t kBodiesOfAllPoses = 8;
-
-std::int32_t column_value(double value) {
-  constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost));
-}
 
 /// Appends at most `most` points of a model, evenly spaced in their order along the curve.
 void append_points(std::span<const Vec3> model, std::size_t most, std::uint8_t tag,
@@ -110,35 +104,6 @@ std::vector<PagePoint> points_of_bodies(std::span<DrawnBody> bodies, const PageL
     body.shown_points = out.size() - before;
   }
   return out;
-}
-
-void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
-                         const PageLattice& lattice, std::vector<PageColumn>& columns) {
-  static constexpr const char* kNames[] = {"body.there", "body.x",  "body.y",  "body.z",  "body.r0",
-                                           "body.r1",    "body.r2", "body.r3", "body.r4", "body.r5",
-                                           "body.r6",    "body.r7", "body.r8"};
-  std::vector<std::vector<std::int32_t>> values(std::size(kNames));
-  for (const DrawnBody& body : bodies) {
-    for (const std::uint32_t at : shown) {
-      const Pose* pose = body.pose_at(at);
-      values[0].push_back(pose != nullptr ? 1 : 0);
-      for (int k = 0; k < 3; ++k) {
-        values[1 + k].push_back(
-            pose != nullptr
-                ? column_value((pose->translation[k] - lattice.origin[k]) / lattice.step)
-                : 0);
-      }
-      for (int k = 0; k < 9; ++k) {
-        values[4 + k].push_back(pose != nullptr ? column_value(pose->rotation[k] / kRotationStep)
-                                                : 0);
-      }
-    }
-  }
-  const std::size_t first = columns.size();
-  for (const char* name : kNames) columns.push_back({name, {}});
-  for_each_parallel(values.size(), [&](std::size_t k) {
-    columns[first + k].base64 = deflated_base64(delta_planes(values[k]));
-  });
 }
 
 std::size_t most_shown_poses(std::size_t bodies) {

@@ -36,11 +36,6 @@ Box box_around(std::span<const DrawnBody> bodies);
 std::vector<PagePoint> points_of_bodies(std::span<DrawnBody> bodies, const PageLattice& lattice,
                                         std::size_t most);
 
-/// Appends the columns body.there (1 where the body has a pose), body.x to body.z and body.r0 to
-/// body.r8. Each has the values of one body after the other, at the shown poses.
-void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
-                         const PageLattice& lattice, std::vector<PageColumn>& columns);
-
 /// The most poses that the page shows, so few that the columns of all bodies together do not grow
 /// with the number of bodies.
 std::size_t most_shown_poses(std::size_t bodies);

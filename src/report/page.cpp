@@ -138,6 +138,9 @@ std::string delta_planes(std::span<const std::int32_t> values) {
   return out;
 }
 
+namespace {
+
+/// The bytes compressed in zlib format, then in base64.
 std::string deflated_base64(std::string_view bytes) {
   static constexpr char kDigits[] =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -157,22 +160,18 @@ std::string deflated_base64(std::string_view bytes) {
   return out;
 }
 
+}  // namespace
+
 void append_columns(const std::string& name, const std::vector<PagePoint>& points,
                     std::vector<PageColumn>& columns) {
-  const std::size_t first = columns.size();
-  for (const char* axis : {".x", ".y", ".z", ".tag"}) columns.push_back({name + axis, {}});
-  for_each_parallel(4, [&](int k) {
-    std::string bytes;
-    if (k < 3) {
-      std::vector<std::int32_t> values(points.size());
-      for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[k];
-      bytes = delta_planes(values);
-    } else {
-      bytes.resize(points.size());
-      for (std::size_t i = 0; i < points.size(); ++i) bytes[i] = static_cast<char>(points[i].tag);
-    }
-    columns[first + static_cast<std::size_t>(k)].base64 = deflated_base64(bytes);
-  });
+  std::vector<std::int32_t> values(points.size());
+  for (int k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < points.size(); ++i) values[i] = points[i].q[k];
+    columns.push_back({name + "." + "xyz"[k], delta_planes(values)});
+  }
+  std::string tags;
+  for (const PagePoint& point : points) tags += static_cast<char>(point.tag);
+  columns.push_back({name + ".tag", std::move(tags)});
 }
 
 Json page_head(const PageTexts& texts, const std::string& title) {
@@ -180,78 +179,35 @@ Json page_head(const PageTexts& texts, const std::string& title) {
           {"client", texts.client},       {"author", texts.author}, {"date", texts.date}};
 }
 
-namespace {
-
-class PageFile {
- public:
-  explicit PageFile(const std::filesystem::path& path) : file_(File::create(path)) {}
-
-  void write(std::string_view text) {
-    file_.write(std::as_bytes(std::span(text)));
-    bytes_ += text.size();
-  }
-  std::uint64_t bytes() const { return bytes_; }
-
- private:
-  File file_;
-  std::uint64_t bytes_ = 0;
-};
-
-/// Writes a page, part by part.
-class PageWriter {
- public:
-  PageWriter(const std::filesystem::path& path, PageKind kind, const PageContent& content)
-      : file_(path), is_report_(kind == PageKind::kReport), content_(content) {}
-
-  /// Writes a text, and what its names in double braces stand for.
-  void write(std::string_view text) {
-    constexpr std::string_view kOpen = "{{", kClose = "}}";
-    while (true) {
-      const std::size_t open = text.find(kOpen), close = text.find(kClose);
-      if (open == std::string_view::npos) break;
-      file_.write(text.substr(0, open));
-      write_place(text.substr(open + 2, close - open - 2));
-      text.remove_prefix(close + kClose.size());
-    }
-    file_.write(text);
-  }
-
-  std::uint64_t bytes() const { return file_.bytes(); }
-
- private:
-  void write_place(std::string_view name) {
-    using namespace page_parts;
-    if (name == "TITLE") file_.write(markup_text(content_.title));
-    if (name == "STYLE") file_.write(kStyle);
-    if (name == "ANSWER") file_.write(is_report_ ? "Verdict" : "Answer");
-    if (name == "PARTS") write(is_report_ ? kReportParts : kSectionParts);
-    if (name == "ROUTE") write(kCrossSection);
-    if (name == "SECTION") file_.write(content_.section);
-    if (name == "FACTS") file_.write(content_.facts);
-    if (name == "COLUMNS") write_columns();
-    if (name == "SCRIPT") file_.write(is_report_ ? kScript : kSectionScript);
-  }
-
-  void write_columns() {
-    for (const PageColumn& column : content_.columns) {
-      file_.write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
-      file_.write(column.base64);
-      file_.write("</script>\n");
+std::uint64_t write_page(const std::filesystem::path& path, std::string_view page,
+                         PageContent content) {
+  for_each_parallel(content.columns.size(), [&](std::size_t i) {
+    content.columns[i].bytes = deflated_base64(content.columns[i].bytes);
+  });
+  File file = File::create(path);
+  std::uint64_t bytes = 0;
+  const auto write = [&](std::string_view text) {
+    file.write(std::as_bytes(std::span(text)));
+    bytes += text.size();
+  };
+  constexpr std::string_view kOpen = "{{", kClose = "}}";
+  for (std::size_t open = 0; (open = page.find(kOpen)) != std::string_view::npos;) {
+    write(page.substr(0, open));
+    page.remove_prefix(open + kOpen.size());
+    const std::string_view name = page.substr(0, page.find(kClose));
+    page.remove_prefix(name.size() + kClose.size());
+    if (name == "TITLE") write(markup_text(content.title));
+    if (name == "SECTION") write(content.section);
+    if (name == "FACTS") write(content.facts);
+    if (name != "COLUMNS") continue;
+    for (const PageColumn& column : content.columns) {
+      write(R"(<script type="text/plain" data-column=")" + column.name + R"(">)");
+      write(column.bytes);
+      write("</script>\n");
     }
   }
-
-  PageFile file_;
-  const bool is_report_;
-  const PageContent& content_;
-};
-
-}  // namespace
-
-std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
-                         const PageContent& content) {
-  PageWriter page(path, kind, content);
-  page.write(page_parts::kFrame);
-  return page.bytes();
+  write(page);
+  return bytes;
 }
 
 }  // namespace clearway

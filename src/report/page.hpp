@@ -39,36 +39,26 @@ PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t t
 /// are small. The order depends only on the points.
 void sort_along_curve(std::vector<PagePoint>& points);
 
-/// A column of the page: its bytes, deflated and in base64. docs/design/report.md describes the
-/// layout.
+/// A column of the page: the bytes that the browser reads, which write_page() compresses.
+/// docs/design/report.md describes the layout.
 struct PageColumn {
   std::string name;
-  std::string base64;
+  std::string bytes;
 };
 
 /// The differences of consecutive values, zigzag-encoded, in four planes of bytes.
 std::string delta_planes(std::span<const std::int32_t> values);
 
-/// The bytes compressed in zlib format, then in base64.
-std::string deflated_base64(std::string_view bytes);
-
 /// Appends the columns NAME.x, NAME.y, NAME.z and NAME.tag.
 void append_columns(const std::string& name, const std::vector<PagePoint>& points,
                     std::vector<PageColumn>& columns);
 
-/// The files of src/report/page, which the build puts into the program.
-namespace page_parts {
-
-extern const std::string_view kFrame, kReportParts, kSectionParts, kCrossSection;
-extern const std::string_view kStyle, kScript, kSectionScript;
-
-}  // namespace page_parts
+/// What the browser runs, of the files of src/report/page, which the build puts into the program.
+/// A name in double braces stands for a part of the content.
+extern const std::string_view kReportPage, kSectionPage;
 
 /// What the facts of every page begin with: the version, and the texts of its head.
 Json page_head(const PageTexts& texts, const std::string& title);
-
-/// What a page is about, which decides on its parts.
-enum class PageKind { kReport, kSection };
 
 /// What is put into the parts of a page.
 struct PageContent {
@@ -78,9 +68,9 @@ struct PageContent {
   std::vector<PageColumn> columns;
 };
 
-/// Writes the page: what the browser runs, and the content. Returns the size of the page in bytes.
-/// Throws ResourceError.
-std::uint64_t write_page(const std::filesystem::path& path, PageKind kind,
-                         const PageContent& content);
+/// Writes a page, kReportPage or kSectionPage, with its content. Returns its size in bytes. Throws
+/// ResourceError.
+std::uint64_t write_page(const std::filesystem::path& path, std::string_view page,
+                         PageContent content);
 
 }  // namespace clearway

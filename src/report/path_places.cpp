@@ -33,8 +33,6 @@ double path_length(std::span<const Vec3> centres) {
 
 }  // namespace
 
-Vec3 box_centre_at(const Box& model, const Pose& pose) { return transform(pose, model.centre()); }
-
 PathPlaces::PathPlaces(std::span<const DrawnBody> bodies) {
   for (const DrawnBody& body : bodies) {
     half_diagonal_ = std::max(half_diagonal_, length(body.box.lo, body.box.hi) / 2);
@@ -48,7 +46,7 @@ PathPlaces::PathPlaces(std::span<const DrawnBody> bodies) {
 void PathPlaces::add(const DrawnBody& body) {
   std::vector<Vec3> centres;
   centres.reserve(body.poses.size());
-  for (const Pose& pose : body.poses) centres.push_back(box_centre_at(body.box, pose));
+  for (const Pose& pose : body.poses) centres.push_back(transform(pose, body.box.centre()));
   const double step =
       std::max(reach_ / 12, path_length(centres) / static_cast<double>(kMostPlaces));
   for (std::size_t i = 0; i < centres.size(); ++i) {

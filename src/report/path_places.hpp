@@ -48,7 +48,4 @@ class PathPlaces {
   std::vector<Place> places_;
 };
 
-/// The centre of the model's box at a pose.
-Vec3 box_centre_at(const Box& model, const Pose& pose);
-
 }  // namespace clearway

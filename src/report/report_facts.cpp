@@ -15,6 +15,7 @@
 #include "core/describe/labels.hpp"
 #include "core/describe/query.hpp"
 #include "core/describe/seen.hpp"
+#include "core/describe/stations.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/point_classes.hpp"
 #include "core/query/verdict_words.hpp"
@@ -36,6 +37,14 @@ namespace {
 
 constexpr const char* kClassNames[] = {"hit", "near", "watch"};
 
+/// The rows as a list of what make(row) gives.
+template <typename Rows, typename Make>
+Json list_of(const Rows& rows, const Make& make) {
+  Json out = Json::array();
+  for (const auto& row : rows) out.push_back(make(row));
+  return out;
+}
+
 /// The number of triangles that belong to no solid.
 std::uint64_t surface_triangles(const Model& model) {
   if (!model.is_solid()) return model.triangles.size();
@@ -48,19 +57,15 @@ std::uint64_t surface_triangles(std::span<const DrawnBody> bodies) {
   return count;
 }
 
-Json json_of_bodies(const ReportFacts& facts) {
-  Json out = Json::array();
-  for (const DrawnBody& body : facts.bodies) {
-    out.push_back({{"name", body.name},
-                   {"points", body.model.vertices.size()},
-                   {"triangles", body.model.triangles.size()},
-                   {"solids", body.model.solid_count()},
-                   {"surface_triangles", surface_triangles(body.model)},
-                   {"poses", body.poses.size()},
-                   {"shown_points", body.shown_points},
-                   {"box", body.box}});
-  }
-  return out;
+Json json_of(const DrawnBody& body) {
+  return {{"name", body.name},
+          {"points", body.model.vertices.size()},
+          {"triangles", body.model.triangles.size()},
+          {"solids", body.model.solid_count()},
+          {"surface_triangles", surface_triangles(body.model)},
+          {"poses", body.poses.size()},
+          {"shown_points", body.shown_points},
+          {"box", body.box}};
 }
 
 /// Adds the name of a body; nothing for a single model.
@@ -84,11 +89,13 @@ Json json_of_inputs(const ReportFacts& facts) {
              {"solids", header.model_solids},
              {"surface_triangles", surface_triangles(facts.bodies)},
              {"spacing", or_null(spacing_of(header))},
-             {"box", facts.model_box}};
+             {"box", box_around(facts.bodies)}};
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     model["axes"] = Json::array({name_of(axes.forward), name_of(axes.up)});
   }
-  if (!header.bodies.empty()) model["bodies"] = json_of_bodies(facts);
+  if (!header.bodies.empty()) {
+    model["bodies"] = list_of(facts.bodies, [](const DrawnBody& body) { return json_of(body); });
+  }
   return {{"result",
            {{"name", options.result_name}, {"hash", hash_text(facts.result.reader().identity())}}},
           {"environment",
@@ -113,18 +120,15 @@ Json json_of_inputs(const ReportFacts& facts) {
 /// The stretches where bodies have no pose, so that nothing is known about them.
 Json json_of_unsearched(const ReportFacts& facts) {
   const double start = facts.options.conflicts.chainage_start;
-  Json out = Json::array();
-  for (const UnsearchedStretch& stretch : facts.unsearched) {
-    Json bodies = Json::array();
-    for (const std::uint32_t body : stretch.bodies) bodies.push_back(facts.bodies[body].name);
-    out.push_back({{"first_pose", stretch.first_pose},
-                   {"last_pose", stretch.last_pose},
-                   {"chainage_from", start + stretch.chainage_from},
-                   {"chainage_to", start + stretch.chainage_to},
-                   {"bodies", std::move(bodies)},
-                   {"has_answer", stretch.has_answer}});
-  }
-  return out;
+  const auto name_of_body = [&](std::uint32_t body) { return facts.bodies[body].name; };
+  return list_of(facts.unsearched, [&](const UnsearchedStretch& stretch) -> Json {
+    return {{"first_pose", stretch.first_pose},
+            {"last_pose", stretch.last_pose},
+            {"chainage_from", start + stretch.chainage_from},
+            {"chainage_to", start + stretch.chainage_to},
+            {"bodies", list_of(stretch.bodies, name_of_body)},
+            {"has_answer", stretch.has_answer}};
+  });
 }
 
 /// What the search left out; null where it left out nothing.
@@ -173,29 +177,35 @@ Json json_of_classes(const ReportFacts& facts) {
   return out;
 }
 
-/// Adds the labels of the stations from which and to which something reaches, where it has them.
-template <typename Labelled>
-void add_stations(Json& json, const Labelled& labelled) {
-  if (labelled.station_from) json["station_from"] = *labelled.station_from;
-  if (labelled.station_to) json["station_to"] = *labelled.station_to;
+Json json_of(const Overthrow& body) {
+  return {{"end", or_null(body.end)}, {"middle", or_null(body.middle)}};
 }
 
 /// Adds the value of a column, if the row has one or the column is never left out.
 template <typename Column, typename Row>
 void add_finding(Json& json, const Column& column, const Row& row) {
   const auto& value = column.of(row);
+  const std::string key = column.key;
   using Value = typename Column::Value;
   if constexpr (std::is_same_v<Value, Box>) {
     json["lo"] = value.lo;
     json["hi"] = value.hi;
+  } else if constexpr (std::is_same_v<Value, std::optional<FoundPlace>>) {
+    json[key] = value ? Json(value->distance) : Json();
+    json[key + "_source"] = value ? Json(value->source) : Json();
+    json[key + "_pose"] = value ? Json(value->pose) : Json();
+  } else if constexpr (std::is_same_v<Value, std::vector<Reason>>) {
+    json[key] = names_of(value);
+  } else if constexpr (std::is_same_v<Value, std::vector<Overthrow>>) {
+    json[key] = list_of(value, [](const Overthrow& body) { return json_of(body); });
   } else if constexpr (std::is_enum_v<Value>) {
-    json[column.key] = name_of(value);
+    json[key] = name_of(value);
   } else if constexpr (requires { name_of(*value); }) {
-    json[column.key] = value ? Json(name_of(*value)) : Json();
+    json[key] = value ? Json(name_of(*value)) : Json();
   } else if constexpr (requires { value.has_value(); }) {
-    if (value || !column.use.is_left_out) json[column.key] = or_null(value);
+    if (value || !column.use.is_left_out) json[key] = or_null(value);
   } else {
-    json[column.key] = value;
+    json[key] = value;
   }
 }
 
@@ -249,8 +259,6 @@ Json json_of_conflicts(const ReportFacts& facts) {
   if (facts.conflicts == nullptr) return {};
   const Conflicts& found = *facts.conflicts;
   const Conflict* worst = worst_of(found);
-  Json list = Json::array();
-  for (const Conflict* conflict : listed_in_page(found)) list.push_back(json_of(*conflict, facts));
   return {{"count", found.listed.size()},
           {"gap", found.gap},
           {"min_points", found.min_points},
@@ -261,45 +269,26 @@ Json json_of_conflicts(const ReportFacts& facts) {
           {"small_points", found.small_points},
           {"first_small", first_small(found)},
           {"worst", worst == nullptr ? Json() : Json(worst->id)},
-          {"list", std::move(list)}};
-}
-
-void add_place(Json& json, const std::string& name, const std::optional<FoundPlace>& place) {
-  json[name] = place ? Json(place->distance) : Json();
-  json[name + "_source"] = place ? Json(place->source) : Json();
-  json[name + "_pose"] = place ? Json(place->pose) : Json();
+          {"list", list_of(listed_in_page(found),
+                           [&](const Conflict* one) { return json_of(*one, facts); })}};
 }
 
 Json json_of(const StationRow& row) {
-  Json out{{"chainage_from", row.chainage_from}, {"chainage_to", row.chainage_to}};
-  add_stations(out, row);
-  add_place(out, "least", row.least);
-  out["least_below"] = or_null(row.least_below);
-  out["least_above"] = or_null(row.least_above);
-  add_place(out, "left", row.left);
-  add_place(out, "right", row.right);
-  add_place(out, "above", row.above);
-  out["verdict"] = name_of(row.verdict);
-  out["reasons"] = names_of(row.reasons);
-  out["doubts"] = row.doubts;
-  out["searched"] = row.is_searched;
-  Json& overthrow = out["overthrow"] = Json::array();
-  for (const Overthrow& body : row.overthrow) {
-    overthrow.push_back({{"end", or_null(body.end)}, {"middle", or_null(body.middle)}});
-  }
+  Json out = Json::object();
+  for_each_field(kStationColumns, [&](const auto& column) { add_finding(out, column, row); });
+  if (!row.station_from) out.erase("station_from");
+  if (!row.station_to) out.erase("station_to");
   return out;
 }
 
 /// The table of stations; null where the result has no first poses.
 Json json_of_stations(const ReportFacts& facts) {
-  if (facts.stations == nullptr) return {};
-  Json notes = Json::array(), list = Json::array();
-  for (const Message& message : facts.stations->warnings) notes.push_back(message.text);
-  for (const StationRow& row : facts.stations->rows) list.push_back(json_of(row));
-  return {{"every", facts.every},
-          {"bodies", facts.stations->bodies},
-          {"notes", std::move(notes)},
-          {"list", std::move(list)}};
+  if (!facts.stations) return {};
+  return {
+      {"every", facts.every},
+      {"bodies", facts.stations->bodies},
+      {"notes", list_of(facts.stations->warnings, [](const Message& one) { return one.text; })},
+      {"list", list_of(facts.stations->rows, [](const StationRow& row) { return json_of(row); })}};
 }
 
 Json json_of(const StretchShift& row) {
@@ -310,13 +299,11 @@ Json json_of(const StretchShift& row) {
 }
 
 Json json_of(const ShiftTable& table) {
-  Json list = Json::array();
-  for (const StretchShift& row : table.conflicts) list.push_back(json_of(row));
   return {{"lateral_from", table.lateral_from},
           {"lateral_to", table.lateral_to},
           {"step", table.step},
           {"path", json_of(table.path)},
-          {"list", std::move(list)}};
+          {"list", list_of(table.conflicts, [](const StretchShift& row) { return json_of(row); })}};
 }
 
 /// What the ledger says of the listed conflicts and of its rows.
@@ -325,24 +312,22 @@ Json json_of_ledger(const ReportFacts& facts) {
   Json out{{"name", facts.options.ledger_name}, {"sentence", ledger_sentence(ledger)}};
   out.update(ledger_json(ledger));
   if (ledger.conflicts.size() <= kMostListedConflicts) return out;
-  Json listed = Json::array();
-  for (const Conflict* conflict : listed_in_page(*facts.conflicts)) {
-    listed.push_back(out["conflicts"][conflict->id - 1]);
-  }
-  out["conflicts"] = std::move(listed);
+  out["conflicts"] = list_of(listed_in_page(*facts.conflicts),
+                             [&](const Conflict* one) { return out["conflicts"][one->id - 1]; });
   return out;
 }
 
 Json json_of_least(const ReportFacts& facts) {
   if (!facts.least) return {};
-  Json out{{"distance", facts.least->distance},       {"pose", facts.least->pose},
-           {"chainage", facts.least_chainage},        {"source", facts.least->source},
-           {"point", or_null(facts.least->xyz)},      {"side", name_of(facts.least->side)},
-           {"lateral", or_null(facts.least->lateral)}};
-  add_body(out, facts, facts.least->body);
-  out["height"] = or_null(facts.least->height);
-  out["of"] = facts.least_of;
-  out["point_class"] = class_words(facts.least->point_class.value_or(0));
+  const LeastDistance& least = *facts.least;
+  const FoundPlace& place = least.place;
+  Json out{{"distance", place.distance},       {"pose", place.pose}, {"chainage", least.chainage},
+           {"source", place.source},           {"point", place.xyz}, {"side", name_of(least.side)},
+           {"lateral", or_null(least.lateral)}};
+  add_body(out, facts, least.body);
+  out["height"] = or_null(least.height);
+  out["of"] = least.of;
+  out["point_class"] = class_words(place.point_class.value_or(0));
   return out;
 }
 
@@ -351,7 +336,7 @@ Json json_of_inside(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   if (header.model_solids == 0 || !(std::max(header.clearance, header.profile) > 0)) return {};
   return {{"points", header.clearance > 0 ? Json(facts.points.summary.inside_points) : Json()},
-          {"depth", facts.least ? std::max(0.0, -facts.least->distance) : 0.0}};
+          {"depth", facts.least ? std::max(0.0, -facts.least->place.distance) : 0.0}};
 }
 
 Json json_of(const PageLattice& lattice) {
@@ -445,25 +430,22 @@ Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
   const UnseenFront& front = unseen.front;
   const Answer& answer = facts.answer;
   const auto& origins = facts.store.reader().metadata().origins;
-  Json rest_on = Json::array(), list = Json::array(), stretches = Json::array();
-  if (origins) {
-    for (const OriginBasis& basis : origins->rest_on) {
-      rest_on.push_back({{"what", basis.what}, {"points", basis.points}});
-    }
-  }
-  for (const UnseenGroup& group : unseen.listed) list.push_back(json_of(group, facts));
-  for (const auto& [from, to] : unseen.stretches) stretches.push_back(Json::array({from, to}));
   Json out;
   for_each_field(kSeenColumns, [&](const auto& column) { out[column.key] = column.of(seen); });
   out["radius"] = answer.budget ? answer.budget->near_radius(answer.parameters.radius)
                                 : answer.parameters.radius;
   out["seen_min"] = answer.parameters.seen_min;
   out["behind_conflicts"] = unseen.behind_conflicts;
-  out["origins"] = std::move(rest_on);
+  out["origins"] = Json::array();
+  if (origins) {
+    out["origins"] = list_of(origins->rest_on, [](const OriginBasis& basis) -> Json {
+      return {{"what", basis.what}, {"points", basis.points}};
+    });
+  }
   out["points_without_origin"] = origins ? origins->points_without : answer.environment_points;
   out["places"] = origins ? origins->quanta.size() : 0;
-  out["list"] = std::move(list);
-  out["stretches"] = std::move(stretches);
+  out["list"] = list_of(unseen.listed, [&](const UnseenGroup& one) { return json_of(one, facts); });
+  out["stretches"] = unseen.stretches;
   out["front"] = {{"cell", front.cell},    {"columns", front.columns}, {"rows", front.rows},
                   {"left", front.left},    {"up", front.up},           {"swept", front.swept},
                   {"unseen", front.unseen}};
@@ -471,12 +453,9 @@ Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
 }
 
 Json json_of_warnings(const std::vector<Message>& warnings) {
-  Json out = Json::array();
-  for (const Message& warning : warnings) {
-    out.push_back(
-        {{"code", warning.code}, {"message", warning.text}, {"stretches", warning.stretches}});
-  }
-  return out;
+  return list_of(warnings, [](const Message& warning) -> Json {
+    return {{"code", warning.code}, {"message", warning.text}, {"stretches", warning.stretches}};
+  });
 }
 
 }  // namespace
@@ -550,7 +529,7 @@ std::string json_of(const ReportFacts& facts) {
   out["classes"] = json_of_classes(facts);
   out["conflicts"] = json_of_conflicts(facts);
   out["stations"] = json_of_stations(facts);
-  if (facts.section != nullptr) out["section"] = facts.section->facts();
+  if (facts.section) out["section"] = facts.section->facts();
   if (facts.options.shifts) out["shifts"] = json_of(*facts.options.shifts);
   if (facts.options.ledger) out["ledger"] = json_of_ledger(facts);
   out["page"] = json_of_page(facts);

@@ -20,46 +20,40 @@ namespace clearway {
 
 /// The least distance that the result knows, and where it is.
 struct LeastDistance {
-  double distance = 0;  ///< metres
-  std::uint32_t pose = 0;
-  std::uint64_t source = 0;
-  std::optional<Vec3> xyz;
-  /// The side on which xyz lies at the pose, as for conflicts.
+  FoundPlace place;
+  const char* of = nullptr;  ///< "clearance" or "profile", whichever it is from
+  double chainage = 0;
+  /// The side on which the point lies at the pose, as for conflicts.
   Side side = Side::kUnknown;
   std::optional<double> lateral = {}, height = {};
   /// The body of a vehicle that is so near.
   std::optional<std::uint32_t> body = {};
-  std::optional<std::uint8_t> point_class = {};  ///< as of FoundPlace
 };
 
 /// Everything that the page says in words and numbers.
 struct ReportFacts {
   const Result& result;
-  /// The answer as far as it is known without the result's rows.
-  Answer answer;
   const Store& store;
   const ReportOptions& options;
   std::span<const Pose> poses;  ///< of the path
-  std::string title;
-  Box model_box{};
-  std::span<const DrawnBody> bodies;  ///< the model alone where there is no vehicle
+  Answer answer;                ///< as far as it is known by now
   std::vector<double> classes;
-  std::vector<UnsearchedStretch> unsearched;
-  SearchedLength searched;
-  const Conflicts* conflicts = nullptr;    ///< null where the result has no first poses
-  const SectionView* section = nullptr;    ///< null where none was given
-  const StationTable* stations = nullptr;  ///< null where the result has no first poses
-  double every = 0;                        ///< length of its stretches
-  const UnseenGroups& unseen;              ///< empty where seen space was not asked for
-  const ShownPoints& points;
-  const EnvironmentSample& environment;
+  std::vector<DrawnBody> bodies;  ///< the model alone where there is no vehicle
+  std::string title = {};
+  std::vector<UnsearchedStretch> unsearched = {};
+  SearchedLength searched = {};
+  const Conflicts* conflicts = nullptr;       ///< null where the result has no first poses
+  std::optional<SectionView> section = {};    ///< none where none was given
+  std::optional<StationTable> stations = {};  ///< none where the result has no first poses
+  double every = 0;                           ///< length of its stretches
+  UnseenGroups unseen = {};                   ///< empty where seen space was not asked for
+  ShownPoints points = {};
+  EnvironmentSample environment = {};
   /// How far from the model's centre environment points are shown at all, and densely.
   double reach = 0, dense_reach = 0;
   std::size_t shown_poses = 0, shown_model_points = 0;
-  std::optional<LeastDistance> least;  ///< the least of the clearances or of the profile
-  double least_chainage = 0;
-  const char* least_of = nullptr;  ///< "clearance" or "profile", whichever `least` is from
-  PageLattice lattice, environment_lattice, model_lattice;
+  std::optional<LeastDistance> least = {};  ///< the least of the clearances or of the profile
+  PageLattice lattice = {}, environment_lattice = {}, model_lattice = {};
 };
 
 inline constexpr std::size_t kMostListedConflicts = 5'000;

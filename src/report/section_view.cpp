@@ -548,7 +548,7 @@ std::string packed(const CellBits& bits) {
 
 void add_integers(const std::string& name, const std::vector<std::int32_t>& values,
                   std::vector<PageColumn>& columns) {
-  columns.push_back({name, deflated_base64(delta_planes(values))});
+  columns.push_back({name, delta_planes(values)});
 }
 
 /// Widths in cells, or -1 where a side is open, and their poses.
@@ -589,7 +589,7 @@ void SectionView::add_columns(std::vector<PageColumn>& columns) const {
     if (check_ && stopping_[i]) stops[at] = true;
     firsts.push_back(static_cast<std::int32_t>(section_.cells().first_pose[i]));
   }
-  columns.push_back({"section.whole", deflated_base64(packed(whole))});
+  columns.push_back({"section.whole", packed(whole)});
   add_integers("section.first", firsts, columns);
   if (check_) {
     std::string bytes = packed(stops);
@@ -601,7 +601,7 @@ void SectionView::add_columns(std::vector<PageColumn>& columns) const {
       }
       bytes += packed(of_load);
     }
-    columns.push_back({"section.stops", deflated_base64(bytes)});
+    columns.push_back({"section.stops", std::move(bytes)});
   }
   std::vector<const std::vector<SectionBand>*> rows;
   for (const SectionStretch& stretch : stretches_) rows.push_back(&stretch.bands);
@@ -618,7 +618,7 @@ void SectionView::add_columns(std::vector<PageColumn>& columns) const {
       for (; i < of.size() && of.bin[i] == bin; ++i) bits[place(of.j[i], of.k[i])] = true;
       bytes += packed(bits);
     }
-    return deflated_base64(bytes);
+    return bytes;
   };
   columns.push_back({"section.cells", bits_of_bins(all)});
   if (not_known().size() > 0) columns.push_back({"section.unknown", bits_of_bins(not_known())});

@@ -7,65 +7,53 @@
 #include <type_traits>
 #include <utility>
 
-#include "io/files/parallel_loop.hpp"
-
 namespace clearway {
 namespace {
 
-std::int32_t whole(double value) {
+/// Adds a column of numbers: number(item) for each item.
+template <typename Items, typename Number>
+void add_numbers(std::string name, const Items& items, const Number& number,
+                 std::vector<PageColumn>& columns) {
   constexpr double kMost = std::numeric_limits<std::int32_t>::max();
-  return static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost));
+  std::vector<std::int32_t> values;
+  values.reserve(items.size());
+  for (const auto& item : items) {
+    const double value = number(item);
+    values.push_back(static_cast<std::int32_t>(std::clamp(std::round(value), -kMost, kMost)));
+  }
+  columns.push_back({std::move(name), delta_planes(values)});
 }
 
-/// A column with one number for each shown pose.
-struct NumberColumn {
-  std::string name;
-  std::vector<std::int32_t> values;
-};
-
-class PoseColumns {
- public:
-  PoseColumns(std::span<const std::uint32_t> shown, std::vector<NumberColumn>& columns)
-      : shown_(shown), columns_(columns) {}
-
-  /// Adds a column. number(i) gives the value of pose i.
-  template <typename Number>
-  void add(std::string name, const Number& number) {
-    NumberColumn column{std::move(name), {}};
-    column.values.reserve(shown_.size());
-    for (const std::uint32_t i : shown_) column.values.push_back(whole(number(i)));
-    columns_.push_back(std::move(column));
-  }
-
- private:
-  std::span<const std::uint32_t> shown_;
-  std::vector<NumberColumn>& columns_;
-};
-
-void add_places(PoseColumns& out, std::span<const Pose> poses, const PageLattice& lattice) {
-  static constexpr const char* kPlace[] = {"pose.x", "pose.y", "pose.z"};
-  static constexpr const char* kRotation[] = {"pose.r0", "pose.r1", "pose.r2", "pose.r3", "pose.r4",
-                                              "pose.r5", "pose.r6", "pose.r7", "pose.r8"};
+/// Adds the places of poses as NAME.x to NAME.z, and their rotations as NAME.r0 to NAME.r8; zeros
+/// where there is no pose.
+void add_places(const std::string& name, std::span<const Pose* const> poses,
+                const PageLattice& lattice, std::vector<PageColumn>& columns) {
   for (int k = 0; k < 3; ++k) {
-    out.add(kPlace[k], [&](std::uint32_t i) {
-      return (poses[i].translation[k] - lattice.origin[k]) / lattice.step;
-    });
+    const auto place = [&](const Pose* pose) {
+      return pose ? (pose->translation[k] - lattice.origin[k]) / lattice.step : 0;
+    };
+    add_numbers(name + "." + "xyz"[k], poses, place, columns);
   }
   for (int k = 0; k < 9; ++k) {
-    out.add(kRotation[k], [&](std::uint32_t i) { return poses[i].rotation[k] / kRotationStep; });
+    const auto turn = [&](const Pose* pose) {
+      return pose ? pose->rotation[k] / kRotationStep : 0;
+    };
+    add_numbers(name + ".r" + std::to_string(k), poses, turn, columns);
   }
 }
 
-void add_profile(PoseColumns& out, const Profile& profile, const PageLattice& lattice) {
-  static constexpr const char* kPoint[] = {"pose.px", "pose.py", "pose.pz"};
-  out.add("pose.distance", [&](std::uint32_t i) {
+void add_profile(std::span<const std::uint32_t> shown, const Profile& profile,
+                 const PageLattice& lattice, std::vector<PageColumn>& columns) {
+  const auto distance = [&](std::uint32_t i) {
     return std::isfinite(profile.distance[i]) ? profile.distance[i] / kDistanceStep : kNoDistance;
-  });
+  };
+  add_numbers("pose.distance", shown, distance, columns);
   for (int k = 0; k < 3; ++k) {
-    out.add(kPoint[k], [&](std::uint32_t i) {
+    const auto place = [&](std::uint32_t i) {
       if (profile.source[i] == Profile::kNoPoint) return 0.0;
       return (profile.xyz[i][k] - lattice.origin[k]) / lattice.step;
-    });
+    };
+    add_numbers(std::string("pose.p") + "xyz"[k], shown, place, columns);
   }
 }
 
@@ -77,12 +65,6 @@ std::string lines_of(std::span<const std::uint32_t> shown, const std::vector<std
     out += '\n';
   }
   return out;
-}
-
-/// The page's column of a label.
-template <typename Type>
-std::string column_of(const PoseLabel<Type>& label) {
-  return std::string("pose.") + label.key;
 }
 
 }  // namespace
@@ -120,33 +102,37 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
                          std::span<const double> chainage, const Profile& profile,
                          const PoseLabels& labels, const PageLattice& lattice,
                          std::vector<PageColumn>& columns) {
-  std::vector<NumberColumn> numbers;
-  PoseColumns out(shown, numbers);
-  out.add("pose.index", [](std::uint32_t i) { return i; });
-  add_places(out, poses, lattice);
-  out.add("pose.chainage", [&](std::uint32_t i) { return chainage[i] / kChainageStep; });
-  if (!profile.distance.empty()) add_profile(out, profile, lattice);
+  const auto index = [](std::uint32_t i) { return i; };
+  std::vector<const Pose*> there;
+  for (const std::uint32_t i : shown) there.push_back(&poses[i]);
+  add_numbers("pose.index", shown, index, columns);
+  add_places("pose", there, lattice, columns);
+  const auto along = [&](std::uint32_t i) { return chainage[i] / kChainageStep; };
+  add_numbers("pose.chainage", shown, along, columns);
+  if (!profile.distance.empty()) add_profile(shown, profile, lattice, columns);
   for_each_label([&](const auto& label) {
-    if constexpr (!std::decay_t<decltype(label)>::is_text()) {
-      const std::vector<double>& values = label.of(labels);
-      if (values.empty()) return;
-      const double origin = origin_on_page(label, values);
-      out.add(column_of(label), [&](std::uint32_t i) { return (values[i] - origin) / kLabelStep; });
-    }
-  });
-  const std::size_t first = columns.size();
-  for (const NumberColumn& column : numbers) columns.push_back({column.name, {}});
-  for_each_parallel(numbers.size(), [&](std::size_t k) {
-    columns[first + k].base64 = deflated_base64(delta_planes(numbers[k].values));
-  });
-  for_each_label([&](const auto& label) {
+    const auto& values = label.of(labels);
+    if (values.empty()) return;
+    const std::string name = std::string("pose.") + label.key;
     if constexpr (std::decay_t<decltype(label)>::is_text()) {
-      const std::vector<std::string>& texts = label.of(labels);
-      if (!texts.empty()) {
-        columns.push_back({column_of(label), deflated_base64(lines_of(shown, texts))});
-      }
+      columns.push_back({name, lines_of(shown, values)});
+    } else {
+      const double origin = origin_on_page(label, values);
+      const auto steps = [&](std::uint32_t i) { return (values[i] - origin) / kLabelStep; };
+      add_numbers(name, shown, steps, columns);
     }
   });
+}
+
+void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
+                         const PageLattice& lattice, std::vector<PageColumn>& columns) {
+  std::vector<const Pose*> there;
+  for (const DrawnBody& body : bodies) {
+    for (const std::uint32_t i : shown) there.push_back(body.pose_at(i));
+  }
+  const auto is_there = [](const Pose* pose) { return pose == nullptr ? 0 : 1; };
+  add_numbers("body.there", there, is_there, columns);
+  add_places("body", there, lattice, columns);
 }
 
 }  // namespace clearway

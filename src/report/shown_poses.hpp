@@ -9,6 +9,7 @@
 #include "clearway/result.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/labels.hpp"
+#include "report/drawn_bodies.hpp"
 #include "report/page.hpp"
 
 namespace clearway {
@@ -28,6 +29,11 @@ void append_pose_columns(std::span<const std::uint32_t> shown, std::span<const P
                          std::span<const double> chainage, const Profile& profile,
                          const PoseLabels& labels, const PageLattice& lattice,
                          std::vector<PageColumn>& columns);
+
+/// Appends the columns body.there (1 where the body has a pose), body.x to body.z and body.r0 to
+/// body.r8. Each has the values of one body after the other, at the shown poses.
+void append_body_columns(std::span<const DrawnBody> bodies, std::span<const std::uint32_t> shown,
+                         const PageLattice& lattice, std::vector<PageColumn>& columns);
 
 /// The value of pose.distance for a pose without a point within the profile's distance. Depths are
 /// greater than it.

@@ -20,7 +20,6 @@
 #include "io/result/result.hpp"
 #include "io/scans/length_unit.hpp"
 #include "io/store/store_reader.hpp"
-#include "report/drawn_bodies.hpp"
 #include "report/environment_sample.hpp"
 #include "report/page.hpp"
 #include "report/path_places.hpp"
@@ -86,6 +85,12 @@ Answer judged(const Result& result, const std::vector<Message>& warnings) {
   return answer;
 }
 
+std::string title_of(const ReportOptions& options) {
+  if (!options.title.empty()) return options.title;
+  if (options.model_name.empty() || options.environment_name.empty()) return "Clearance report";
+  return options.model_name + " through " + options.environment_name;
+}
+
 /// Removes all but the largest of the listed groups, of which the page lists no more.
 void keep_largest(std::size_t most, UnseenGroups& unseen) {
   if (unseen.listed.size() <= most) return;
@@ -118,93 +123,102 @@ class Report {
   Report(const Result& result, const Store& store, const Model& model,
          const std::vector<Pose>& poses, const ReportOptions& options, const FoundConflicts* found)
       : found_(found),
-        result_(result),
-        answer_(judged(result, options.warnings)),
-        store_(store),
         model_(model),
         poses_(poses),
-        options_(options),
+        how_(options.conflicts),
         progress_(options.conflicts.progress, options.conflicts.stop),
-        classes_(classes_of(result, options.classes)),
-        bodies_(drawn_bodies(model, poses, options)),
-        model_box_(box_around(bodies_)),
-        path_(bodies_),
-        lattice_(lattice_for(page_box(path_), kStep)) {
+        facts_{.result = result,
+               .store = store,
+               .options = options,
+               .poses = poses,
+               .answer = judged(result, options.warnings),
+               .classes = classes_of(result, options.classes),
+               .bodies = drawn_bodies(model, poses, options),
+               .title = title_of(options),
+               .unsearched = unsearched_stretches(poses, options.bodies),
+               .searched = searched_length(poses, options.bodies)},
+        path_(facts_.bodies),
+        chainage_(chainage_of(poses)) {
+    how_.bodies = options.bodies;
+    how_.station = options.labels.station;
+    facts_.lattice = lattice_for(page_box(path_), kStep);
+    facts_.environment_lattice = {facts_.lattice.origin,
+                                  std::max(kEnvironmentStep, facts_.lattice.step)};
+    facts_.reach = path_.reach();
+    facts_.dense_reach = path_.dense_reach();
     if (options.section == nullptr) return;
     picture_.section_name = options.section_name;
-    section_.emplace(*options.section, picture_);
+    facts_.section.emplace(*options.section, picture_);
   }
 
   ReportSummary write(const std::filesystem::path& path) {
     ReportSummary summary;
+    Answer& answer = facts_.answer;
     find_conflicts_and_points(summary.conflicts);
-    find_stations();
-    find_unseen();
-    profile_ = result_.profile();
-    static_cast<TableSummary&>(answer_) = points_.summary;
-    answer_.near_points = result_.reader().near();
-    summarise(profile_, answer_);
+    if (facts_.conflicts != nullptr) find_stations();
+    facts_.unseen = find_unseen_groups(facts_.result, poses_, how_);
+    keep_largest(kMostListedConflicts, facts_.unseen);
+    profile_ = facts_.result.profile();
+    static_cast<TableSummary&>(answer) = facts_.points.summary;
+    answer.near_points = facts_.result.reader().near();
+    summarise(profile_, answer);
     find_least();
-    environment_lattice_.step = std::max(kEnvironmentStep, lattice_.step);
-    environment_lattice_.origin = lattice_.origin;
-    environment_ =
-        sample_environment(store_, path_, environment_lattice_, options_.max_points, progress_);
-    PageContent content{.title = title(), .facts = {}, .section = {}, .columns = {}};
-    content.columns = make_columns(summary.conflicts);
-    if (section_) {
-      content.section = section_svg(*section_, false);
-      section_->add_columns(content.columns);
+    facts_.environment = sample_environment(facts_.store, path_, facts_.environment_lattice,
+                                            facts_.options.max_points, progress_);
+    PageContent content{.title = facts_.title,
+                        .facts = {},
+                        .section = {},
+                        .columns = make_columns(summary.conflicts)};
+    if (facts_.section) {
+      content.section = section_svg(*facts_.section, false);
+      facts_.section->add_columns(content.columns);
     }
-    content.facts = summary.facts = facts(summary.conflicts);
-    summary.verdict = answer_.verdict();
+    content.facts = summary.facts = json_of(facts_);
+    summary.verdict = answer.verdict();
     summary.clear = summary.verdict == Verdict::kClear;
-    summary.bytes = write_page(path, PageKind::kReport, content);
+    summary.bytes = write_page(path, kReportPage, std::move(content));
     return summary;
   }
 
  private:
-  std::string title() const {
-    if (!options_.title.empty()) return options_.title;
-    if (options_.model_name.empty() || options_.environment_name.empty()) return "Clearance report";
-    return options_.model_name + " through " + options_.environment_name;
-  }
-
   void find_conflicts_and_points(Conflicts& conflicts) {
+    const ReportOptions& options = facts_.options;
+    const ResultReader& reader = facts_.result.reader();
     std::vector<std::uint32_t> found_here;
     const std::vector<std::uint32_t>* conflict_of = &found_here;
-    if (result_.parameters().first_pose) {
-      ConflictOptions find = options_.conflicts;
-      find.bodies = options_.bodies;
-      find.station = options_.labels.station;
-      if (options_.bodies.empty()) find.model = &model_;
-      if (found_ != nullptr && found_->are_of(result_.reader().header(), find)) {
+    if (facts_.result.parameters().first_pose) {
+      facts_.conflicts = &conflicts;
+      ConflictOptions find = how_;
+      if (options.bodies.empty()) find.model = &model_;
+      if (found_ != nullptr && found_->are_of(reader.header(), find)) {
         conflicts = found_->conflicts;
         conflict_of = &found_->conflict_of;
       } else {
-        conflicts = find_conflicts(result_, poses_, find, &found_here);
+        conflicts = find_conflicts(facts_.result, poses_, find, &found_here);
       }
     }
-    add_warnings(conflict_warnings(conflicts, unit_of(result_.reader().header())),
-                 answer_.warnings);
-    if (options_.shifts) check_shifts(*options_.shifts, conflicts, result_.reader());
-    if (options_.ledger && options_.ledger->conflicts.size() != conflicts.listed.size()) {
+    add_warnings(conflict_warnings(conflicts, unit_of(reader.header())), facts_.answer.warnings);
+    if (options.shifts) check_shifts(*options.shifts, conflicts, reader);
+    if (options.ledger && options.ledger->conflicts.size() != conflicts.listed.size()) {
       throw UsageError("ledger: it judges " +
-                       counted(options_.ledger->conflicts.size(), "conflict") +
+                       counted(options.ledger->conflicts.size(), "conflict") +
                        ", and the result has " + format_count(conflicts.listed.size()) +
                        "; expected that of these conflicts, found with the same options");
     }
-    PointSelection selection{
-        .classes = classes_, .conflicts = &conflicts, .conflict_of = conflict_of, .wanted = {}};
+    PointSelection selection{.classes = facts_.classes,
+                             .conflicts = &conflicts,
+                             .conflict_of = conflict_of,
+                             .wanted = {}};
     for (const Conflict& conflict : conflicts.listed) {
       if (conflict.nearest_source) selection.wanted.push_back(*conflict.nearest_source);
     }
     std::ranges::sort(selection.wanted);
-    points_ = read_shown_points(result_, lattice_, selection, progress_);
+    facts_.points = read_shown_points(facts_.result, facts_.lattice, selection, progress_);
   }
 
   /// The length of the stretches of the table of stations.
   double every() const {
-    if (options_.every != 0) return options_.every;
+    if (facts_.options.every != 0) return facts_.options.every;
     constexpr double kMostRows = 200;
     const double length = path_length(poses_);
     for (double scale = 5;; scale *= 10) {
@@ -215,41 +229,35 @@ class Report {
   }
 
   void find_stations() {
-    if (!result_.parameters().first_pose) return;
-    every_ = every();
+    facts_.every = every();
     StationOptions how;
-    how.every = every_;
-    how.chainage_start = options_.conflicts.chainage_start;
-    how.forward = options_.conflicts.forward;
-    how.up = options_.conflicts.up;
-    how.bodies = options_.bodies;
-    how.station = options_.labels.station;
-    how.threads = options_.conflicts.threads;
-    how.progress = options_.conflicts.progress;
-    how.stop = options_.conflicts.stop;
-    stations_ = station_table(result_, poses_, how);
-    if (stations_->rows.size() <= kMostStationRowsOfPage) return;
-    throw UsageError("a table of " + counted(stations_->rows.size(), "stretch", "stretches") +
-                     " of " + format_brief(every_) +
+    how.every = facts_.every;
+    how.chainage_start = how_.chainage_start;
+    how.forward = how_.forward;
+    how.up = how_.up;
+    how.bodies = how_.bodies;
+    how.station = how_.station;
+    how.threads = how_.threads;
+    how.progress = how_.progress;
+    how.stop = how_.stop;
+    facts_.stations = station_table(facts_.result, poses_, how);
+    if (facts_.stations->rows.size() <= kMostStationRowsOfPage) return;
+    throw UsageError("a table of " + counted(facts_.stations->rows.size(), "stretch", "stretches") +
+                     " of " + format_brief(how.every) +
                      " m is too long for a page; expected at least " +
                      format_brief(path_length(poses_) / kMostStationRowsOfPage) + " m");
   }
 
-  void find_unseen() {
-    ConflictOptions how = options_.conflicts;
-    how.bodies = options_.bodies;
-    unseen_ = find_unseen_groups(result_, poses_, how);
-    keep_largest(kMostListedConflicts, unseen_);
-  }
-
   /// The cubes of the listed groups, group after group, as many as the page draws.
   std::vector<PagePoint> unseen_points() const {
+    const UnseenGroups& unseen = facts_.unseen;
     std::vector<PagePoint> out;
     std::size_t first = 0;
-    for (const UnseenGroup& group : unseen_.listed) {
-      const std::uint64_t shown = shown_cubes(unseen_, group);
+    for (const UnseenGroup& group : unseen.listed) {
+      const std::uint64_t shown = shown_cubes(unseen, group);
       for (std::uint64_t i = 0; i < shown; ++i) {
-        out.push_back(page_point(lattice_, unseen_.middles[first + i * group.cubes / shown], 0));
+        const Vec3& middle = unseen.middles[first + i * group.cubes / shown];
+        out.push_back(page_point(facts_.lattice, middle, 0));
       }
       first += group.cubes;
     }
@@ -257,130 +265,84 @@ class Report {
   }
 
   void find_least() {
-    chainage_ = chainage_of(poses_);
-    const bool has_clearance = answer_.least_clearance.has_value();
-    const auto& nearest = has_clearance ? answer_.least_clearance : answer_.least_profile;
+    const Answer& answer = facts_.answer;
+    const bool has_clearance = answer.least_clearance.has_value();
+    const auto& nearest = has_clearance ? answer.least_clearance : answer.least_profile;
     if (!nearest) return;
-    least_of_ = has_clearance ? "clearance" : "profile";
-    least_ = {.distance = nearest->distance,
-              .pose = nearest->pose,
-              .source = nearest->source,
-              .xyz = nearest->xyz,
-              .point_class = nearest->point_class};
-    if (!has_clearance && is_vehicle()) find_nearest_body();
-    if (has_clearance && !answer_.bodies.empty()) least_->body = nearest->body;
-    place_least();
+    LeastDistance& least = facts_.least.emplace();
+    least.place = *nearest;
+    least.of = has_clearance ? "clearance" : "profile";
+    least.chainage = how_.chainage_start + chainage_[nearest->pose];
+    if (!has_clearance && is_vehicle()) least.body = nearest_body(*nearest);
+    if (has_clearance && !answer.bodies.empty()) least.body = nearest->body;
+    place(least);
   }
 
-  bool is_vehicle() const { return !options_.bodies.empty(); }
+  bool is_vehicle() const { return !how_.bodies.empty(); }
 
-  /// Finds the body that is nearest, because a profile does not say which one it is.
-  void find_nearest_body() {
+  /// The body that is nearest to a place, because a profile does not say which one it is; none
+  /// where no body has a pose.
+  std::optional<std::uint32_t> nearest_body(const FoundPlace& place) const {
+    std::optional<std::uint32_t> nearest;
     double least = std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
-      const double distance = bodies_[i].distance_to(*least_->xyz, least_->pose);
+    for (std::uint32_t i = 0; i < facts_.bodies.size(); ++i) {
+      const double distance = facts_.bodies[i].distance_to(place.xyz, place.pose);
       if (!(distance < least)) continue;
       least = distance;
-      least_->body = i;
+      nearest = i;
     }
+    return nearest;
   }
 
   /// Finds where the nearest point lies, seen from the model or from its body.
-  void place_least() {
-    if (!least_->xyz) return;
-    const ConflictOptions& how = options_.conflicts;
-    const DrawnBody& body = bodies_[least_->body.value_or(0)];
-    const Pose* pose = body.pose_at(least_->pose);
+  void place(LeastDistance& least) const {
+    const DrawnBody& body = facts_.bodies[least.body.value_or(0)];
+    const Pose* pose = body.pose_at(least.place.pose);
     if (pose == nullptr) return;
-    const Vec3 there = ahead_left_up(*least_->xyz, *pose, how.forward, how.up);
+    const Vec3 there = ahead_left_up(least.place.xyz, *pose, how_.forward, how_.up);
     if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
-    least_->side = side_of({there, there}, body.box, how.forward, how.up);
-    least_->lateral = there.y;
-    least_->height = there.z;
+    least.side = side_of({there, there}, body.box, how_.forward, how_.up);
+    least.lateral = there.y;
+    least.height = there.z;
   }
 
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
     std::vector<PageColumn> columns;
     progress_.begin("page", 0, "");
-    shown_ =
-        choose_poses(poses_.size(), profile_, conflicts.listed, most_shown_poses(bodies_.size()));
-    if (least_) shown_.push_back(least_->pose);
-    for (const UnseenGroup& group : unseen_.listed) shown_.push_back(group.first_pose);
-    std::ranges::sort(shown_);
-    shown_.erase(std::unique(shown_.begin(), shown_.end()), shown_.end());
-    model_lattice_ = lattice_for(model_box_, path_.half_diagonal() / 0x1p15);
-    model_lattice_.origin = box_centre_at(model_box_, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {}});
+    std::vector<std::uint32_t> shown = choose_poses(poses_.size(), profile_, conflicts.listed,
+                                                    most_shown_poses(facts_.bodies.size()));
+    if (facts_.least) shown.push_back(facts_.least->place.pose);
+    for (const UnseenGroup& group : facts_.unseen.listed) shown.push_back(group.first_pose);
+    std::ranges::sort(shown);
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    facts_.shown_poses = shown.size();
+    const Box box = box_around(facts_.bodies);
+    facts_.model_lattice = lattice_for(box, path_.half_diagonal() / 0x1p15);
+    facts_.model_lattice.origin = box.centre();
     const std::vector<PagePoint> model =
-        points_of_bodies(bodies_, model_lattice_, kMostModelPoints);
-    shown_model_points_ = model.size();
-    append_columns("environment", environment_.points, columns);
-    append_columns("points", points_.points, columns);
+        points_of_bodies(facts_.bodies, facts_.model_lattice, kMostModelPoints);
+    facts_.shown_model_points = model.size();
+    append_columns("environment", facts_.environment.points, columns);
+    append_columns("points", facts_.points.points, columns);
     append_columns("model", model, columns);
-    if (!unseen_.listed.empty()) append_columns("unseen", unseen_points(), columns);
-    append_pose_columns(shown_, poses_, chainage_, profile_, options_.labels, lattice_, columns);
-    if (is_vehicle()) append_body_columns(bodies_, shown_, lattice_, columns);
+    if (!facts_.unseen.listed.empty()) append_columns("unseen", unseen_points(), columns);
+    append_pose_columns(shown, poses_, chainage_, profile_, facts_.options.labels, facts_.lattice,
+                        columns);
+    if (is_vehicle()) append_body_columns(facts_.bodies, shown, facts_.lattice, columns);
     progress_.end();
     return columns;
   }
 
-  std::string facts(const Conflicts& conflicts) const {
-    return json_of(ReportFacts{
-        .result = result_,
-        .answer = answer_,
-        .store = store_,
-        .options = options_,
-        .poses = poses_,
-        .title = title(),
-        .model_box = model_box_,
-        .bodies = bodies_,
-        .classes = classes_,
-        .unsearched = unsearched_stretches(poses_, options_.bodies),
-        .searched = searched_length(poses_, options_.bodies),
-        .conflicts = result_.parameters().first_pose ? &conflicts : nullptr,
-        .section = section_ ? &*section_ : nullptr,
-        .stations = stations_ ? &*stations_ : nullptr,
-        .every = every_,
-        .unseen = unseen_,
-        .points = points_,
-        .environment = environment_,
-        .reach = path_.reach(),
-        .dense_reach = path_.dense_reach(),
-        .shown_poses = shown_.size(),
-        .shown_model_points = shown_model_points_,
-        .least = least_,
-        .least_chainage = least_ ? options_.conflicts.chainage_start + chainage_[least_->pose] : 0,
-        .least_of = least_of_,
-        .lattice = lattice_,
-        .environment_lattice = environment_lattice_,
-        .model_lattice = model_lattice_});
-  }
-
   const FoundConflicts* found_;  ///< may be null
-  const Result& result_;
-  Answer answer_;
-  const Store& store_;
   const Model& model_;
   const std::vector<Pose>& poses_;
-  const ReportOptions& options_;
+  ConflictOptions how_;  ///< those of the report, with its bodies and stations
   CallbackProgress progress_;
-  std::vector<double> classes_;
-  std::vector<DrawnBody> bodies_;
-  Box model_box_;
-  PathPlaces path_;
-  PageLattice lattice_, environment_lattice_, model_lattice_;
-  ShownPoints points_;
-  EnvironmentSample environment_;
-  Profile profile_;
-  std::optional<StationTable> stations_;
-  double every_ = 0;
-  UnseenGroups unseen_;
   SectionPicture picture_;
-  std::optional<SectionView> section_;
+  ReportFacts facts_;
+  PathPlaces path_;
   std::vector<double> chainage_;
-  std::vector<std::uint32_t> shown_;
-  std::size_t shown_model_points_ = 0;
-  std::optional<LeastDistance> least_;
-  const char* least_of_ = nullptr;
+  Profile profile_;
 };
 
 }  // namespace

@@ -45,7 +45,7 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
       .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
   summary.bytes = in_all_threads([&] {
     view.add_columns(content.columns);
-    return write_page(file.partial(), PageKind::kSection, content);
+    return write_page(file.partial(), kSectionPage, std::move(content));
   });
   file.publish();
   return summary;
