@@ -15,9 +15,6 @@ function percentWords(share) {
   return String(percent === 0 && share > 0 ? "<1" : percent === 100 && share < 1 ? ">99" : percent);
 }
 
-/** From white to dark, so that grey says the same. */
-const frontRgb = (share) => mix([255, 255, 255], [59, 7, 100], share);
-
 /** Draws the grid with its numbers and axes, and the outline of the vehicle over it. */
 function drawFront(canvas) {
   const { front } = seenFacts(), { width } = canvas, context = canvas.getContext("2d");
@@ -36,7 +33,7 @@ function drawFront(canvas) {
     const column = i % front.columns, row = Math.floor(i / front.columns);
     const x = x0 + (front.columns - 1 - column) * pixels, y = y0 + (front.rows - 1 - row) * pixels;
     const small = swept < kLittleSwept * most, inset = small ? 0.3 * pixels : 0;
-    context.fillStyle = `rgb(${frontRgb(share).map(Math.round).join(",")})`;
+    context.fillStyle = `rgb(${shadeOf(share).join(",")})`;
     context.fillRect(x + inset, y + inset, pixels - 2 * inset + (small ? 0 : 0.5),
                      pixels - 2 * inset + (small ? 0 : 0.5));
     if (small || share === 0) return;
@@ -99,14 +96,6 @@ function drawFrontAxes(context, x0, y0, pixels, scale) {
   haloText(context, `height above the path (${unitSymbol})`, x0, y0 - 10 * scale, "left");
 }
 
-/** Five steps of the scale, with their shares. */
-function frontScale() {
-  return make("div", { class: "scale", "aria-hidden": "true" }, [0, 0.25, 0.5, 0.75, 1].map((share) =>
-      make("span", { style: `background:rgb(${frontRgb(share).map(Math.round).join(",")});` +
-                            `color:${share > 0.45 ? "#fff" : "#111827"}` },
-           `${100 * share} %`)));
-}
-
 /** Where most is unseen, for those who do not see the picture. */
 function frontWords() {
   const { front } = seenFacts();
@@ -141,6 +130,6 @@ function buildFront() {
            "cross-section were not scanned. Darker is more, white is all scanned, and grey is not swept. " +
            (little ? "Small squares are places that the vehicle sweeps on less than a tenth of the way. " : "") +
            `A cell is ${shortLength(front.cell)} wide. The line is the vehicle's outline. ${frontWords()}`)),
-      frontScale());
+      shadeScale((share) => share, (share) => `${100 * share} %`));
   drawFront(canvas);
 }

@@ -68,14 +68,10 @@ const chosenBy = (choose) => ({ tabindex: 0, onclick: choose, onkeydown: (event)
   choose();
 } });
 
-/** The cells of a row. columns: {title, cell, number}, where cell(item) is a text or an element. */
-const cellsOf = (columns, item) =>
-    columns.map(({ cell, number, text }) =>
-        make("td", { class: number ? "number" : text ? "text" : null }, cell(item)));
+/** Columns of a table. list: of each its title, what makes its cell of an item, a text or an element, and "number" or "text". */
+const columnsOf = (list) => list.filter(Boolean).map(([title, cell, kind = null]) => ({ title, cell, kind }));
 
-/** How many bars below an axis have no room for their number; nothing where all have it. */
-const crowdedBars = (bars) => bars === 0 ? "" : make("p", { class: "note" },
-    `${plural(bars, "bar")} below the axis ${bars === 1 ? "has" : "have"} no room for a number; the table has all of them.`);
+const cellsOf = (columns, item) => columns.map(({ cell, kind }) => make("td", { class: kind }, cell(item)));
 
 /** A box that scrolls. An edge fades where columns or rows lie beyond it, so that no number seems to end there. */
 function scrollBox(kind, ...content) {
@@ -89,11 +85,15 @@ function scrollBox(kind, ...content) {
   return box;
 }
 
-/** A table with a row of titles. */
+/** A table with a row of titles. rows: elements. */
 const listTable = (label, columns, rows) => make("table", { class: "list", "aria-label": label },
-    make("thead", {}, make("tr", {}, columns.map(({ title, number }) =>
-        make("th", { scope: "col", class: number ? "number" : null }, title)))),
+    make("thead", {}, make("tr", {}, columns.map(({ title, heading = title, kind }) =>
+        make("th", { scope: "col", class: kind === "number" ? kind : null }, heading)))),
     make("tbody", {}, rows));
+
+/** The same with a row for each item, in a box that scrolls. how(item): attributes of its row. */
+const itemTable = (label, columns, items, how = () => ({}), kind = "") => scrollBox(kind,
+    listTable(label, columns, items.map((item) => make("tr", how(item), cellsOf(columns, item)))));
 
 /** Reads what the page holds, and then builds its parts in this order. */
 async function fillPage(read, builds) {

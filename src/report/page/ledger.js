@@ -100,19 +100,18 @@ function buildLedgerRows() {
     byId("ledger-rows").append(done && make("p", { class: "note" }, done));
     return;
   }
-  const columns = [
-    { title: "Row", cell: (row) => row.key ?? "" },
-    { title: "Status", cell: (row) => make("span", {}, statusWord(row.shown), wasWords(row)) },
-    { title: "Why", text: true, cell: (row) => capital(row.why ?? "") },
-    { title: "Decided", text: true, cell: decisionCell },
-    { title: "Seen", cell: seenCell },
-    { title: `Place x, y, z (${unitSymbol})`, number: true, cell: middleOfRow },
-  ].filter(({ title }) => title !== "Decided" || rows.some(decisionWords));
+  const columns = columnsOf([
+    ["Row", (row) => row.key ?? ""],
+    ["Status", (row) => make("span", {}, statusWord(row.shown), wasWords(row))],
+    ["Why", (row) => capital(row.why ?? ""), "text"],
+    rows.some(decisionWords) && ["Decided", decisionCell, "text"],
+    ["Seen", seenCell],
+    [`Place x, y, z (${unitSymbol})`, middleOfRow, "number"],
+  ]);
   const shown = rows.slice(0, kShownRows), left = rows.length - shown.length;
   byId("ledger-rows").append(
     make("h3", {}, "Rows of the ledger without a conflict"),
     make("p", { class: "note" }, "A row is gone only if this run shows that nothing is there any more." +
          (left > 0 ? ` These are the first ${count(kShownRows)} of ${count(rows.length)}.` : "") + (done && ` ${done}`)),
-    scrollBox("", listTable("Rows of the ledger without a conflict", columns,
-        shown.map((row) => make("tr", {}, cellsOf(columns, row))))));
+    itemTable("Rows of the ledger without a conflict", columns, shown));
 }

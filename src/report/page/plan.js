@@ -239,15 +239,9 @@ function buildPlan() {
   byId("plan-note").textContent = environmentNote() + (page.enclosed
       ? " The scene is enclosed, so what lies above the vehicle is left out." : "") + unsearchedNote() + marksNote();
   watchPointer(canvas, panPlan, zoomPlan, (x, y) => pickNumber(plan.places, canvas, x, y));
-  canvas.addEventListener("keydown", (event) => {
-    const actions = { ArrowLeft: () => panPlan(0.1, 0), ArrowRight: () => panPlan(-0.1, 0),
-                      ArrowUp: () => panPlan(0, 0.1), ArrowDown: () => panPlan(0, -0.1),
-                      "+": () => zoomPlan(0.6), "=": () => zoomPlan(0.6),
-                      "-": () => zoomPlan(1 / 0.6), "0": fitPlan };
-    if (!actions[event.key]) return;
-    event.preventDefault();
-    actions[event.key]();
-  });
+  onKeys(canvas, () => ({ ArrowLeft: () => panPlan(0.1, 0), ArrowRight: () => panPlan(-0.1, 0),
+                          ArrowUp: () => panPlan(0, 0.1), ArrowDown: () => panPlan(0, -0.1),
+                          ...zoomKeys(() => zoomPlan(0.6), () => zoomPlan(1 / 0.6), fitPlan) }));
   sizePlan();
   fitPlan();
   on("pose", schedulePlan);

@@ -9,7 +9,7 @@ const printedColumns = () => tableColumns().filter(({ title }) => title !== "Dec
 function printedRows(conflict, columns) {
   const { why = "", ...entry } = ledgerOfConflict.get(conflict.id) ?? {};
   const texts = [capital(why), decisionWords(entry)].filter(Boolean).join(". ");
-  return [tableRow(conflict, columns, false),
+  return [make("tr", {}, cellsOf(columns, conflict)),
           texts && make("tr", { class: "remedy" }, make("td", { colspan: 2 }), make("td", { colspan: columns.length - 2 }, texts))];
 }
 
@@ -20,8 +20,7 @@ function printedTable() {
   const left = found - rows.length, elsewhere = list.length < found
       ? `the page itself lists ${count(list.length)}, clearway conflicts writes all`
       : "the page itself lists all";
-  return [make("table", { class: "list" }, tableHead(columns, false),
-               make("tbody", {}, rows.flatMap((c) => printedRows(c, columns)).filter(Boolean))),
+  return [listTable("Conflicts", columns, rows.flatMap((c) => printedRows(c, columns))),
           left > 0 && make("p", { class: "note" },
                            `${plural(left, "more conflict")} not on paper: ${elsewhere}.`)];
 }

@@ -1,12 +1,9 @@
 // The least distance of every pose against chainage, with the required distance and the conflicts.
 
-const profile = { from: 0, to: 1, low: 0, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom: 68,
-                  onPaper: false };
-
-function profileX(chainage) {
-  const inner = profile.width - profile.left - profile.right;
-  return profile.left + inner * (chainage - profile.from) / (profile.to - profile.from);
-}
+const profile = new Chart(68);
+profile.onPaper = false;
+const profileX = (chainage) => profile.x(chainage);
+const profileY = (distance) => profile.y(Math.min(distance, profile.high));
 
 function profileTop() {
   const { query, margins } = page.facts;
@@ -20,11 +17,6 @@ function profileLow() {
     least = Math.min(least, distanceAt(i) ?? 0);
   }
   return 1.08 * least;
-}
-
-function profileY(distance) {
-  const inner = profile.height - profile.top - profile.bottom, top = profileTop();
-  return profile.top + inner * (top - Math.min(distance, top)) / (top - profile.low);
 }
 
 function profileLength() {
@@ -89,30 +81,13 @@ function stationTicks(most) {
 }
 
 function profileAxes() {
-  const { width, height, left, right, bottom, top } = profile, out = [];
-  for (const d of ticks(profile.low, profileTop(), 6)) {
-    out.push(make("line", { x1: left, x2: width - right, y1: profileY(d), y2: profileY(d),
-                            class: "grid" }),
-             make("text", { x: left - 6, y: profileY(d) + 4, class: "end" },
-                  String(d).replace("-", "−")));
-  }
-  const wide = width / 90;
-  for (const c of ticks(profile.from, profile.to, wide)) {
-    out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: height - bottom,
-                            class: "grid" }),
-             make("text", { x: profileX(c), y: height - bottom + 16, class: "middle" }, String(c)));
-  }
-  for (const [c, value] of stationTicks(wide).filter(([at]) => profileX(at) > left + 20)) {
-    out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: top + 5, stroke: "#6b7280" }),
+  const { left, top, tall, wide, width } = profile, right = left + wide, out = profile.axes(6);
+  for (const [c, value] of stationTicks(width / 90).filter(([at]) => profileX(at) > left + 20)) {
+    out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: top + 5, class: "tick" }),
              make("text", { x: profileX(c), y: top + 16, class: "middle station" }, String(value).replace("-", "−")));
   }
-  if (page.poses.labels.station) {
-    out.push(make("text", { x: width - right, y: top - 8, class: "end station" }, "station (m)"));
-  }
-  out.push(make("text", { x: width - right, y: height - 4, class: "end" },
-                `chainage (${unitSymbol})`),
-           make("text", { x: 14, y: (top + height - bottom) / 2, class: "middle",
-                          transform: `rotate(-90 14 ${(top + height - bottom) / 2})` },
+  if (page.poses.labels.station) out.push(make("text", { x: right, y: top - 8, class: "end station" }, "station (m)"));
+  out.push(make("text", { x: 14, y: top + tall / 2, class: "middle", transform: `rotate(-90 14 ${top + tall / 2})` },
                 `least distance (${unitSymbol})`));
   return out;
 }
@@ -138,8 +113,7 @@ function profileSides() {
     const known = list.filter((r) => r[side] !== null && r.chainage_to >= profile.from && r.chainage_from <= profile.to);
     if (known.length === 0) continue;
     const line = known.map((r) => {
-      const [x1, x2] = [r.chainage_from, r.chainage_to].map((c) =>
-          clamp(profileX(c), profile.left, profile.width - profile.right).toFixed(1));
+      const [x1, x2] = [r.chainage_from, r.chainage_to].map((c) => profile.inside(c).toFixed(1));
       return `M${x1} ${profileY(r[side]).toFixed(1)}H${x2}`;
     }).join("");
     out.push(make("path", { d: line, class: `side ${side}`, fill: "none", stroke: "#3b4450", "stroke-width": 2.2,
@@ -169,101 +143,63 @@ function profileBeyond() {
               `Where there is no curve${shaded}, nothing${scannedOnly()} is closer than ${far}.`);
 }
 
-/** Conflicts as bars below the axis, numbered where there is room. */
+/** Conflicts as bars below the axis. */
 function profileConflicts() {
-  const out = [], y = profile.height - profile.bottom + 24;
-  let free = -Infinity;
-  profile.crowded = 0;
-  const worst = worstConflict(), several = classesDiffer();
-  const ends = (conflict) => [conflict.chainage_from, conflict.chainage_to].map((c) =>
-      clamp(profileX(c), profile.left, profile.width - profile.right));
-  const middleOf = (conflict) => ends(conflict)[0] + Math.max(3, ends(conflict)[1] - ends(conflict)[0]) / 2;
-  const taken = page.conflict ? middleOf(page.conflict) : -Infinity;
-  for (const conflict of conflictList()) {
-    if (conflict.chainage_to < profile.from || conflict.chainage_from > profile.to) continue;
-    const [x1, x2] = ends(conflict);
-    const chosen = conflict === page.conflict, words = classOf(conflict.least_distance), quiet = isAccepted(conflict);
-    const colour = quiet ? kQuietColour : words.colour;
-    const width = Math.max(3, x2 - x1), middle = middleOf(conflict);
-    const marked = `${several ? words.symbol : ""}${conflict.id}${quiet ? "✓" : ""}`;
-    const room = 8 * marked.length + 10;
-    const label = chosen || (middle - free > room && Math.abs(middle - taken) > room);
-    if (label) free = middle; else ++profile.crowded;
-    const extra = conflict === worst ? " (worst)" : "";
-    out.push(make("g", { class: chosen ? "mark chosen" : "mark",
-                         onclick: (event) => { event.stopPropagation(); selectConflict(conflict); } },
-      make("rect", isPossible(conflict)
-          ? { x: x1 + 1, y: y + 1, width: Math.max(2, width - 2), height: 5, fill: "#fff",
-              stroke: colour, "stroke-width": quiet ? 1 : 2 }
-          : quiet ? { x: x1, y: y + 2, width, height: 3, fill: colour } : { x: x1, y, width, height: 7, fill: colour }),
-      label && make("text", { x: middle, y: y + 21, class: "middle" }, marked),
-      make("title", {}, `Conflict ${conflict.id}${extra}` + (conflict.class ? `, ${conflict.class}` : "") +
-                           after(ledgerStatus(conflict)))));
-  }
-  return out;
+  const several = classesDiffer(), worst = worstConflict();
+  return profile.bars(conflictList().map((conflict) => {
+    const words = classOf(conflict.least_distance), quiet = isAccepted(conflict), colour = quiet ? kQuietColour : words.colour;
+    return { from: conflict.chainage_from, to: conflict.chainage_to, chosen: conflict === page.conflict,
+             label: `${several ? words.symbol : ""}${conflict.id}${quiet ? "✓" : ""}`, choose: () => selectConflict(conflict),
+             title: `Conflict ${conflict.id}${conflict === worst ? " (worst)" : ""}${after(conflict.class)}${after(ledgerStatus(conflict))}`,
+             look: (x, y, width) => isPossible(conflict)
+                 ? { x: x + 1, y: y + 1, width: Math.max(2, width - 2), height: 5, fill: "#fff", stroke: colour, "stroke-width": quiet ? 1 : 2 }
+                 : quiet ? { x, y: y + 2, width, height: 3, fill: colour } : { x, y, width, height: 7, fill: colour } };
+  }));
 }
+
+/** Words on the profile, beside a line at its left end or, with "end ", at its right one. */
+const profileWords = (y, text, end = "") => make("text",
+    { x: end ? profile.left + profile.wide - 4 : profile.left + 6, y, class: `${end}strong halo` }, text);
 
 /** Between its borders an error budget leaves it open whether something is too close. */
 function profileMargins() {
-  const { query, margins } = page.facts, { left, width, right } = profile;
+  const { query, margins } = page.facts;
   if (!margins) return [];
-  const far = query.radius + margins.clear, close = query.radius - margins.conflict;
-  const y1 = profileY(far), y2 = profileY(Math.max(close, profile.low)), x2 = width - right;
-  const line = (y) => make("line", { x1: left, x2, y1: y, y2: y, class: "margin" });
-  const words = (y, text) => make("text", { x: left + 6, y, class: "strong halo" }, text);
-  const sure = close > profile.low;
-  return [make("rect", { x: left, y: y1, width: x2 - left, height: y2 - y1, class: "margins" }),
-          line(y1), sure && line(y2),
-          words(y1 - 5, `clear above ${shortLength(+far.toPrecision(4))}`),
-          words(sure ? y2 + 15 : y2 - 6, sure ? `certainly too close below ${shortLength(+close.toPrecision(4))}`
-              : "no distance is certainly too close, because the errors exceed the margin")].filter(Boolean);
+  const far = query.radius + margins.clear, close = query.radius - margins.conflict, sure = close > profile.low;
+  const y1 = profileY(far), y2 = profileY(Math.max(close, profile.low));
+  return [make("rect", { ...profile.field, y: y1, height: y2 - y1, class: "margins" }),
+          profile.level(far, "margin"), sure && profile.level(close, "margin"),
+          profileWords(y1 - 5, `clear above ${shortLength(+far.toPrecision(4))}`),
+          profileWords(sure ? y2 + 15 : y2 - 6, sure ? `certainly too close below ${shortLength(+close.toPrecision(4))}`
+              : "no distance is certainly too close, because the errors exceed the margin")];
 }
 
 function profileRequired() {
-  const y = profileY(page.facts.query.radius), { left, width, right } = profile;
-  return [make("line", { x1: left, x2: width - right, y1: y, y2: y, class: "required" }),
-          make("text", { x: width - right - 4, y: y - 5, class: "end strong halo" },
-               `required ${shortLength(page.facts.query.radius)}`)];
+  const { radius } = page.facts.query;
+  return [profile.level(radius, "required"), profileWords(profileY(radius) - 5, `required ${shortLength(radius)}`, "end ")];
 }
 
 /** Below it the environment is inside the vehicle. */
-function profileSurface() {
-  if (profile.low === 0) return [];
-  const y = profileY(0), { left, width, right } = profile;
-  return [make("line", { x1: left, x2: width - right, y1: y, y2: y, class: "surface" }),
-          make("text", { x: left + 6, y: y + 16, class: "strong halo" },
-               "inside the vehicle")];
-}
+const profileSurface = () => profile.low === 0 ? []
+    : [profile.level(0, "surface"), profileWords(profileY(0) + 16, "inside the vehicle")];
 
 function drawProfile() {
   const holder = byId("profile-chart"), { query } = page.facts;
   profile.width = profile.onPaper ? 720 : Math.max(520, holder.clientWidth || 1000);
   profile.height = profile.onPaper ? 360 : clamp(profile.width * 0.24, 220, 420);
   profile.low = profileLow();
+  profile.high = profileTop();
   profile.bottom = conflictList().length > 0 ? 68 : 42;
-  const { width, height, left, right, top, bottom } = profile;
-  const hatch = make("pattern", { id: "hatch", width: 7, height: 7, patternUnits: "userSpaceOnUse",
-                                  patternTransform: "rotate(45)" },
-                     make("rect", { width: 7, height: 7, fill: "#fbd9c6" }),
-                     make("line", { x1: 0, y1: 0, x2: 0, y2: 7, stroke: "#c2410c",
-                                    "stroke-width": 2.5 }));
-  const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0,
-                            role: "application", "aria-label": profileLabel() },
-    make("defs", {}, hatch, unsearchedPatterns(), notScannedPattern()),
-    make("rect", { x: left, y: top, width: width - left - right, height: height - top - bottom,
-                   class: "field" }),
-    profileAxes(), profileMargins().slice(0, 1), profileUnsearched(), profileNotScanned(), profileSides(), profileCurve(),
-    profileSurface(), profileMargins().slice(1), profileRequired(), profileBeyond(), profileConflicts(),
-    make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: height - bottom }));
-  if (!(query.profile > 0)) {
-    svg.append(make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong halo" },
-                    query.between_poses ? "A run between poses has no profile."
-                        : "The result has no profile: clearway run --profile D adds this curve."));
-  }
-  const focused = holder.contains(document.activeElement);
-  holder.replaceChildren(svg, profileKeys(), crowdedBars(profile.crowded));
-  watchProfile(svg);
-  if (focused) svg.focus();
+  const { left, width, height, top, base } = profile, [margins, ...borders] = profileMargins();
+  const none = !(query.profile > 0) && make("text", { x: (left + width) / 2, y: height / 2 - 30, class: "middle strong halo" },
+      query.between_poses ? "A run between poses has no profile."
+          : "The result has no profile: clearway run --profile D adds this curve.");
+  watchProfile(profile.show(holder, profileLabel(), [
+    make("defs", {}, hatching("hatch", 7, 45, "#fbd9c6", ["#c2410c", 2.5]), unsearchedPatterns(), notScannedPattern()),
+    make("rect", { ...profile.field, class: "field" }),
+    profileAxes(), margins, profileUnsearched(), profileNotScanned(), profileSides(), profileCurve(),
+    profileSurface(), borders, profileRequired(), profileBeyond(), profileConflicts(),
+    make("line", { id: "profile-cursor", class: "cursor", y1: top, y2: base }), none], profileKeys()));
   moveProfileCursor();
 }
 
@@ -288,12 +224,7 @@ function panProfile(metresAlong) {
   drawProfile();
 }
 
-function chainageAt(svg, event) {
-  const box = svg.getBoundingClientRect();
-  const x = (event.clientX - box.left) * profile.width / box.width;
-  const inner = profile.width - profile.left - profile.right;
-  return profile.from + (x - profile.left) / inner * (profile.to - profile.from);
-}
+const chainageAt = (svg, event) => profile.at(svg, event)[0];
 
 function watchProfile(svg) {
   svg.addEventListener("pointermove", (event) => {
@@ -313,18 +244,87 @@ function watchProfile(svg) {
     event.preventDefault();
     zoomProfile(event.deltaY > 0 ? 1.25 : 0.8, chainageAt(svg, event));
   }, { passive: false });
-  svg.addEventListener("keydown", profileKey);
+  onKeys(svg, ({ shiftKey }) => {
+    const far = shiftKey ? 50 : 1;
+    return {
+      ArrowRight: () => selectPose(page.pose + far), ArrowLeft: () => selectPose(page.pose - far),
+      Home: () => selectPose(0), End: () => selectPose(page.poses.count - 1),
+      ...zoomKeys(() => zoomProfile(0.5), () => zoomProfile(2), () => zoomProfile(1e9)),
+    };
+  });
 }
 
-function profileKey(event) {
-  const far = event.shiftKey ? 50 : 1;
-  const actions = {
-    ArrowRight: () => selectPose(page.pose + far), ArrowLeft: () => selectPose(page.pose - far),
-    Home: () => selectPose(0), End: () => selectPose(page.poses.count - 1),
-    "+": () => zoomProfile(0.5), "=": () => zoomProfile(0.5), "-": () => zoomProfile(2),
-    "0": () => zoomProfile(1e9),
-  };
-  if (!actions[event.key]) return;
-  event.preventDefault();
-  actions[event.key]();
+function profileValueWords(i) {
+  const left = unsearchedWords(i);
+  return distanceWords(i) + (left ? `${isSearched(i) && distanceWords(i) ? ", " : ": "}${left}` : "");
+}
+
+function distanceWords(i) {
+  const d = distanceAt(i), { query } = page.facts;
+  if (d === undefined || !isSearched(i)) return "";
+  if (d === null) return `: beyond ${shortLength(query.profile)}, nothing is closer`;
+  const missing = query.radius - d;
+  const distance = isInside(d) ? `${depthWords(d)} inside the vehicle` : metres(d);
+  return `: ${distance}` + (missing > 0 ? `, ${missingClause(missingWords(missing, d, isAllSolid() ? "exact" : "at-least"))}` : ", enough");
+}
+
+function showProfileValue(i) {
+  if (page.poses.count === 0) return;
+  let text = poseLabel(i) + profileValueWords(i);
+  const d = distanceAt(i);
+  if (d !== undefined && d !== null) {
+    const step = page.facts.page.lattice.step, { px, py, pz } = page.poses;
+    const point = coordinates(inScan([px[i] * step, py[i] * step, pz[i] * step]));
+    text += `. ${isInside(d) ? "Deepest" : "Nearest"} point: ${point}`;
+  }
+  byId("profile-readout").textContent = text[0].toUpperCase() + text.slice(1);
+  placeProfileCursor(i);
+}
+
+function placeProfileCursor(i) {
+  const line = byId("profile-cursor"), chainage = page.poses.chainage[i];
+  if (!line) return;
+  const inside = chainage >= profile.from && chainage <= profile.to;
+  line.setAttribute("visibility", inside ? "visible" : "hidden");
+  line.setAttribute("x1", profileX(chainage));
+  line.setAttribute("x2", profileX(chainage));
+}
+
+/** The chosen pose stays in sight. */
+function moveProfileCursor() {
+  if (page.poses.count === 0) return;
+  const chainage = page.poses.chainage[page.pose], span = profile.to - profile.from;
+  if (chainage < profile.from || chainage > profile.to) {
+    profile.from = stretchStart(chainage - span / 2, span);
+    profile.to = profile.from + span;
+    drawProfile();
+    return;
+  }
+  showProfileValue(page.pose);
+}
+
+/** The pose of the least distance, seen from near where all of the path is shown. */
+function goToNearest() {
+  selectPose(shownPose(page.facts.least_distance.pose));
+  if (profile.to - profile.from > 0.99 * profileLength()) zoomProfile(0.2);
+  showProfileValue(page.pose);
+  notify("overview");
+}
+
+function buildProfile() {
+  profile.from = profileStart();
+  profile.to = profileStart() + profileLength();
+  const { least_distance: least } = page.facts;
+  byId("profile-tools").append(
+    button("Zoom in", () => zoomProfile(0.5)), button("Zoom out", () => zoomProfile(2)),
+    button("All", () => zoomProfile(1e9)),
+    least ? button(isInside(least.distance) ? "Deepest pose" : "Nearest pose", goToNearest) : "",
+    make("span", { class: "hint" }, "Drag moves, Ctrl and wheel zoom, arrow keys step."));
+  drawProfile();
+  byId("profile-unsearched").append(...unsearchedLegend(), ...notScannedLegend());
+  on("pose", moveProfileCursor);
+  on("conflict", drawProfile);
+  new ResizeObserver(() => {
+    if (!profile.onPaper && Math.abs(byId("profile-chart").clientWidth - profile.width) > 8) drawProfile();
+  }).observe(byId("profile-chart"));
 }

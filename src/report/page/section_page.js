@@ -53,15 +53,14 @@ const loadWords = ({ outline_name: name, outline, margin }) =>
 /** Which outline is judged on which part of the path, and parts without one. */
 function outlinesTable({ rows, gaps, loads }) {
   const parts = [...rows, ...gaps].sort((a, b) => a.chainage_from - b.chainage_from);
-  const columns = [
-    { title: `Chainage (${unitSymbol})`, cell: (p) => rangeWords([p.chainage_from, p.chainage_to]), number: true },
-    { title: "Line", cell: (p) => p.line ?? "", number: true },
-    { title: "Outline", cell: (p) => p.line ? loadWords(loads[p.load]) : "none" },
-    { title: "Verdict", cell: (p) => p.line ? p.verdict ?? "not judged" : "unknown" },
-    { title: "Why", cell: (p) => p.reason ?? "the table has no outline here", text: true },
-  ];
-  return [make("h3", {}, "Outlines by stretch"), scrollBox("tall",
-      listTable("Outlines by stretch", columns, parts.map((part) => make("tr", {}, cellsOf(columns, part)))))];
+  const columns = columnsOf([
+    [`Chainage (${unitSymbol})`, (p) => rangeWords([p.chainage_from, p.chainage_to]), "number"],
+    ["Line", (p) => p.line ?? "", "number"],
+    ["Outline", (p) => p.line ? loadWords(loads[p.load]) : "none"],
+    ["Verdict", (p) => p.line ? p.verdict ?? "not judged" : "unknown"],
+    ["Why", (p) => p.reason ?? "the table has no outline here", "text"],
+  ]);
+  return [make("h3", {}, "Outlines by stretch"), itemTable("Outlines by stretch", columns, parts, undefined, "tall")];
 }
 
 window.addEventListener("beforeprint", () => chooseStretch(section.chosen));

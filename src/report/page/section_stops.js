@@ -1,7 +1,5 @@
 // What stops the load, place by place and stretch by stretch, and the widths as a table.
 
-const kSideWords = { left: "left", right: "right", above: "above", below: "below" };
-
 /** The class of a point in words, and its number. */
 const classWords = ({ class: number, class_name: name }) => number > 0 ? `class ${number} (${name})` : "";
 
@@ -17,16 +15,16 @@ const depthCell = (depth) => depth < 0.0005 ? "< 0.001" : (Math.ceil(depth * 100
 /** Columns with a cell for each intrusion. */
 function stopColumns() {
   const known = section.facts.check.stops.some((stop) => stop.intrusions.some((i) => i.witness));
-  return [
-    { title: "Side", cell: (i) => kSideWords[i.side] },
-    { title: `Too far (${unitSymbol})`, cell: (i) => depthCell(i.depth), number: true },
-    { title: `Deepest at chainage (${unitSymbol})`, cell: (i) => i.chainage.toFixed(2), number: true },
-    { title: "Pose", cell: (i) => String(i.first_pose), number: true },
-    { title: `y (${unitSymbol})`, cell: (i) => `${signed(i.y_from)} – ${signed(i.y_to)}`, number: true },
-    { title: `z (${unitSymbol})`, cell: (i) => `${signed(i.z_from)} – ${signed(i.z_to)}`, number: true },
-    { title: "Cells", cell: (i) => count(i.cells), number: true },
-    known && { title: "What is there", cell: obstacleWords },
-  ].filter(Boolean);
+  return columnsOf([
+    ["Side", (i) => i.side],
+    [`Too far (${unitSymbol})`, (i) => depthCell(i.depth), "number"],
+    [`Deepest at chainage (${unitSymbol})`, (i) => i.chainage.toFixed(2), "number"],
+    ["Pose", (i) => String(i.first_pose), "number"],
+    [`y (${unitSymbol})`, (i) => `${signed(i.y_from)} – ${signed(i.y_to)}`, "number"],
+    [`z (${unitSymbol})`, (i) => `${signed(i.z_from)} – ${signed(i.z_to)}`, "number"],
+    ["Cells", (i) => count(i.cells), "number"],
+    known && ["What is there", obstacleWords],
+  ]);
 }
 
 function stopRows(stop, number, columns) {
@@ -55,25 +53,22 @@ const kShownPlaces = 24, kShownStretches = 12;
 /** What stops the load, place by place, deepest first, with what would free it. */
 function placesTable() {
   const { places, loads } = section.facts.check, known = places.some((p) => p.obstacle || p.witness || othersAt(p));
-  const columns = [
-    { title: "", cell: ({ label }) => label },
-    { title: "Side", cell: ({ side }) => kSideWords[side] },
-    { title: `Too far (${unitSymbol})`, cell: ({ depth }) => depthCell(depth), number: true },
-    { title: `Chainage (${unitSymbol})`, cell: (p) => rangeWords([p.chainage_from, p.chainage_to]), number: true },
-    { title: "Stretches", cell: ({ stops }) => numberRanges(stops) },
-    { title: `Deepest at (${unitSymbol})`, cell: ({ chainage }) => chainage.toFixed(2), number: true },
-    { title: `z (${unitSymbol})`, cell: (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, number: true },
-    loads.length > 1 && { title: "Outline", cell: ({ load }) => loads[load].outline_name },
-    known && { title: "What is there", cell: (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; "), text: true },
-    { title: "What lets the load pass", cell: ({ remedy }) => remedy, text: true },
-  ].filter(Boolean);
-  const rows = places.map((place) => {
-    const show = () => showStretch(section.facts.check.stops[deepestStop(place)].bin);
-    return make("tr", { ...chosenBy(show), tabindex: 0, "data-place": place.label }, cellsOf(columns, place));
-  });
-  const table = (part) => scrollBox("tall", listTable("Places that stop the load", columns, part));
-  return make("div", {}, make("h3", {}, "By place"), table(rows.slice(0, kShownPlaces)),
-      folded(`${plural(places.length - kShownPlaces, "place")} less deep`, rows.length > kShownPlaces && table(rows.slice(kShownPlaces))));
+  const columns = columnsOf([
+    ["", ({ label }) => label],
+    ["Side", ({ side }) => side],
+    [`Too far (${unitSymbol})`, ({ depth }) => depthCell(depth), "number"],
+    [`Chainage (${unitSymbol})`, (p) => rangeWords([p.chainage_from, p.chainage_to]), "number"],
+    ["Stretches", ({ stops }) => numberRanges(stops)],
+    [`Deepest at (${unitSymbol})`, ({ chainage }) => chainage.toFixed(2), "number"],
+    [`z (${unitSymbol})`, (p) => `${signed(p.z_from)} – ${signed(p.z_to)}`, "number"],
+    loads.length > 1 && ["Outline", ({ load }) => loads[load].outline_name],
+    known && ["What is there", (p) => [obstacleWords(p), othersAt(p)].filter(Boolean).join("; "), "text"],
+    ["What lets the load pass", ({ remedy }) => remedy, "text"],
+  ]);
+  const table = (part) => itemTable("Places that stop the load", columns, part, (place) =>
+      ({ ...chosenBy(() => showStretch(section.facts.check.stops[deepestStop(place)].bin)), "data-place": place.label }), "tall");
+  return make("div", {}, make("h3", {}, "By place"), table(places.slice(0, kShownPlaces)),
+      folded(`${plural(places.length - kShownPlaces, "place")} less deep`, places.length > kShownPlaces && table(places.slice(kShownPlaces))));
 }
 
 /** Other named obstacles of the stretches of a place. */
@@ -109,7 +104,7 @@ function buildStops() {
       "A long load meets one obstacle in many stretches, as it passes it from its front to its rear. " +
       "Too far is how much of the load and its margin it takes. y is to the left of the path, and z above it."));
   byId("stops-places").append(placesTable());
-  const titles = [{ title: "No." }, { title: `Chainage (${unitSymbol})` }, ...columns.map(({ title }) => ({ title }))];
+  const titles = columnsOf([["No."], [`Chainage (${unitSymbol})`], ...columns.map(({ title }) => [title])]);
   const table = scrollBox("tall",
       listTable("Stretches that stop the load", titles, stops.flatMap((stop, i) => stopRows(stop, i + 1, columns))));
   byId("stops-table").append(...(stops.length > kShownStretches
@@ -123,16 +118,15 @@ function buildWidths() {
   const wide = (v) => v === null ? "open" : (Math.floor(v * 100 + 1e-6) / 100).toFixed(2);
   const below = bands.length - boxes.length, base = boxes[0].z_from;
   const wideFrom = (box) => box ? wide(box.symmetric_width) : "";
-  const columns = [
+  const columns = columnsOf([
     [`Height (${unitSymbol})`, ({ z_from, z_to }) => rangeWords([z_from, z_to])],
     ["Left", ({ left }) => side(left)], ["Right", ({ right }) => side(right)],
     ["Symmetric width", (band) => wide(band.symmetric_width)],
     [`Width from z = ${fixed(base, 2)} up to here`, (band) => wideFrom(boxes[bands.indexOf(band) - below])],
-  ].map(([title, cell]) => ({ title, cell, number: true }));
+  ].map((column) => [...column, "number"]));
   byId("widths-table").append(
       make("p", {}, `Left and right run from y = 0 to the border of the nearest blocked cell, anywhere on the path. The symmetric width ` +
            `has room for rounding taken off. The last column is for a load that stands at z = ${fixed(base, 2)} ${unitSymbol}` +
            `${below > 0 ? ", the lowest height at which the middle is free." : "."}`),
-      scrollBox("tall",
-           listTable("Widths", columns, bands.map((band) => make("tr", {}, cellsOf(columns, band))))));
+      itemTable("Widths", columns, bands, undefined, "tall"));
 }

@@ -52,16 +52,12 @@ function stationColumns() {
     bodies.forEach((body, b) => columns.push([
       `${body ? `${body}: ` : ""}${name} (${unitSymbol})`, (r) => overthrowCell(r.overthrow[b][what])]));
   }
-  return [...columns.map(([title, cell]) => ({ title, cell, number: true })), { title: "Verdict", cell: rowVerdict }];
+  return columnsOf([...columns.map((column) => [...column, "number"]), ["Verdict", rowVerdict]]);
 }
 
 /** To the pose where the stretch has its nearest point, or else to its begin. */
 function showStretch(row) {
   selectPose(row.least_pose === null ? poseAtChainage(row.chainage_from) : shownPose(row.least_pose));
-}
-
-function stationRow(row, columns) {
-  return make("tr", { ...chosenBy(() => showStretch(row)), "data-verdict": row.verdict }, cellsOf(columns, row));
 }
 
 function stationsNote() {
@@ -82,12 +78,11 @@ function buildStations() {
     removePart("stations");
     return;
   }
-  const columns = stationColumns();
   byId("stations-note").append(make("p", {}, stationsNote()));
   byId("stations-table").append(make("details", { open: stations.list.length <= kUnfoldedRows ? "" : null },
       make("summary", {}, "The table"),
-      scrollBox("",
-           listTable("Stations", columns, stations.list.map((row) => stationRow(row, columns))))));
+      itemTable("Stations", stationColumns(), stations.list, (row) =>
+          ({ ...chosenBy(() => showStretch(row)), "data-verdict": row.verdict }))));
 }
 
 /** All of it on paper; then as it was. */

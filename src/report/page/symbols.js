@@ -1,4 +1,4 @@
-// Signs beside a verdict, and the steps of axes, which several parts of a page draw.
+// Signs beside a verdict.
 
 function warningSymbol() {
   return make("svg", { viewBox: "0 0 64 64", class: "sign", "aria-hidden": "true" },
@@ -18,15 +18,4 @@ function verdictSymbol(verdict) {
                                fill: "currentColor" }),
              make("path", { d: "M21 21 L43 43 M43 21 L21 43", stroke: "#fff", "stroke-width": 7,
                             "stroke-linecap": "round" }));
-}
-
-/** Values at round steps from a to b. */
-function ticks(a, b, most) {
-  const step = [1, 2, 5, 10].map((f) => f * 10 ** Math.floor(Math.log10((b - a) / most)))
-      .find((s) => (b - a) / s <= most) ?? (b - a);
-  const out = [];
-  for (let k = Math.ceil(a / step - 1e-9); k * step <= b + 1e-9 * step; ++k) {
-    out.push(+(k * step).toPrecision(12));
-  }
-  return out;
 }

@@ -13,7 +13,10 @@ function classesDiffer() {
   return new Set(conflictList().map((c) => classOf(c.least_distance).name)).size > 1;
 }
 
-/** title, key to sort by, cell. */
+/** What columns have besides a title, a value to sort by, and a cell. */
+const kText = { kind: null }, kLength = { unit: unitSymbol }, kMost = { down: true }, kMostLength = { ...kLength, ...kMost };
+
+/** {title, heading, value, cell, kind, down (whether the greatest comes first)}. */
 function tableColumns() {
   const list = conflictList(), measured = list.some((c) => c.least_distance !== null);
   const digits = digitsFor(list.map((c) => c.least_distance));
@@ -22,40 +25,43 @@ function tableColumns() {
   const estimated = list.some((c) => (c.depth_source ?? null) !== null);
   const outside = (c) => isInside(c.least_distance) ? "inside" : lengths("least_distance")(c);
   const shifted = list.some((c) => c.own_shift_left !== null || c.own_shift_right !== null);
-  const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key])];
+  const offset = (key) => [(c) => c[key] ?? 0, (c) => c[key] === null ? "" : signed(c[key]), kLength];
   return [
     ["No.", (c) => c.id, (c) => String(c.id)],
     ["Rank", (c) => c.rank, (c) => String(c.rank)],
-    ledgerFacts() && ["Ledger", (c) => ledgerRank(ledgerStatus(c)), ledgerCell],
+    ledgerFacts() && ["Ledger", (c) => ledgerRank(ledgerStatus(c)), ledgerCell, kText],
     ledgerFacts()?.conflicts.some(decisionWords) &&
-        ["Decided", (c) => decisionWords(ledgerOfConflict.get(c.id)), (c) => decisionCell(ledgerOfConflict.get(c.id))],
-    ["Chainage", (c) => c.chainage_from, chainageCell],
-    list.some((c) => c.station_from !== undefined) && ["Station", (c) => c.station_from, stationsCell],
+        ["Decided", (c) => decisionWords(ledgerOfConflict.get(c.id)), (c) => decisionCell(ledgerOfConflict.get(c.id)), kText],
+    ["Chainage", (c) => c.chainage_from, chainageCell, kLength],
+    list.some((c) => c.station_from !== undefined) && ["Station", (c) => c.station_from, stationsCell, { unit: "m" }],
     list.some((c) => c.obstacle_chainage !== null) &&
-        ["Obstacle at", (c) => c.obstacle_chainage ?? c.chainage_from, stationCell],
-    list.some((c) => c.body !== undefined) && ["Body", (c) => c.body ?? "", (c) => c.body ?? ""],
-    ["Side", (c) => c.side, (c) => kSides[c.side]],
+        ["Obstacle at", (c) => c.obstacle_chainage ?? c.chainage_from, stationCell, kLength],
+    list.some((c) => c.body !== undefined) && ["Body", (c) => c.body ?? "", (c) => c.body ?? "", kText],
+    ["Side", (c) => c.side, (c) => kSides[c.side], kText],
     list.some((c) => c.lateral !== null) && ["Lateral", ...offset("lateral")],
     list.some((c) => c.height !== null) && ["Height", ...offset("height")],
-    list.some((c) => c.class) && ["Certainty", (c) => c.class, certaintyCell],
-    measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell],
-    measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside],
-    (deep || estimated) &&
-        [estimated ? "Depth, estimated" : "Depth", (c) => c.depth ?? 0, (c) => c.depth ? fixed(c.depth, digits) : ""],
-    measured && ["Missing", (c) => c.encroachment ?? -1, missingCell],
-    list.some((c) => leastTrim(c) !== null) && ["Trim", (c) => leastTrim(c) ?? Infinity, (c) => roundedUp(leastTrim(c))],
-    shifted && ["Own shift left", (c) => c.own_shift_left ?? Infinity, (c) => roundedUp(c.own_shift_left)],
-    shifted && ["Own shift right", (c) => c.own_shift_right ?? Infinity, (c) => roundedUp(c.own_shift_right)],
-    page.facts.shifts && ["Frees it", freedRank, freedCell],
-    ["Points", (c) => c.points, (c) => count(c.points)],
-    deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0)],
-    ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ")],
+    list.some((c) => c.class) && ["Certainty", (c) => c.class, certaintyCell, kText],
+    measured && classesDiffer() && ["Class", (c) => c.least_distance ?? Infinity, classCell, kText],
+    measured && ["Least distance", (c) => c.least_distance ?? Infinity, outside, kLength],
+    (deep || estimated) && [estimated ? "Depth, estimated" : "Depth", (c) => c.depth ?? 0,
+                            (c) => c.depth ? fixed(c.depth, digits) : "", kMostLength],
+    measured && ["Missing", (c) => c.encroachment ?? -1, missingCell, kMostLength],
+    list.some((c) => leastTrim(c) !== null) &&
+        ["Trim", (c) => leastTrim(c) ?? Infinity, (c) => roundedUp(leastTrim(c)), kMostLength],
+    ...["left", "right"].map((side) => [side, `own_shift_${side}`]).map(([side, key]) =>
+        shifted && [`Own shift ${side}`, (c) => c[key] ?? Infinity, (c) => roundedUp(c[key]), kMostLength]),
+    page.facts.shifts && ["Frees it", freedRank, freedCell, kLength],
+    ["Points", (c) => c.points, (c) => count(c.points), kMost],
+    deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0), kMost],
+    ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × "), kMostLength],
     ["Pose", poseOf, (c) => String(poseOf(c))],
-    ["Place x, y, z", (c) => (c.nearest_point ?? c.centroid)[0],
-     (c) => coordinates(c.nearest_point ?? c.centroid)],
-  ].filter(Boolean).map(([title, value, cell]) =>
-      ({ title, value, cell, number: !["Side", "Class", "Certainty", "Body", "Ledger", "Decided"].includes(title) }));
+    ["Place x, y, z", (c) => placeOfTable(c)[0], (c) => coordinates(placeOfTable(c)), kMostLength],
+  ].filter(Boolean).map(([title, value, cell, how = {}]) =>
+      ({ title, value, cell, kind: "number", ...how, heading: how.unit ? `${title} (${how.unit})` : title }));
 }
+
+/** The nearest point of a conflict, or else the middle of its points. */
+const placeOfTable = (conflict) => conflict.nearest_point ?? conflict.centroid;
 
 /** From and to, or one of them where they are the same. */
 function chainageCell(conflict) {
@@ -88,13 +94,6 @@ function classCell(conflict) {
                                words.symbol), ` ${words.name}`);
 }
 
-/** Column titles with the unit, where all of its numbers have one. */
-function titleWithUnit(title) {
-  const has = ["Chainage", "Obstacle at", "Lateral", "Height", "Least distance", "Depth", "Missing",
-               "Trim", "Own shift left", "Own shift right", "Frees it", "Size", "Place x, y, z"].includes(title);
-  return title === "Station" ? "Station (m)" : has ? `${title} (${unitSymbol})` : title;
-}
-
 const kNotAccepted = "not accepted";
 const hasStatus = (c) => table.status === "" ||
     (table.status === kNotAccepted ? !isAccepted(c) : ledgerStatus(c) === table.status);
@@ -116,32 +115,31 @@ function sortedConflicts(columns, list = filteredConflicts()) {
 }
 
 function sortBy(title) {
-  const numbers = !["No.", "Rank", "Chainage", "Station", "Obstacle at", "Body", "Side", "Lateral", "Height", "Least distance", "Class", "Certainty", "Frees it", "Pose", "Ledger", "Decided"].includes(title);
-  table.down = table.title === title ? !table.down : numbers;
+  const columns = tableColumns(), at = columns.findIndex((column) => column.title === title);
+  const { down = false } = columns[at] ?? {};
+  table.down = table.title === title ? !table.down : down;
   table.title = title;
   table.first = 0;
   drawTable();
-  const at = tableColumns().findIndex((column) => column.title === title);
   document.querySelectorAll("#conflicts-table th button")[at]?.focus();
 }
 
-function tableHead(columns, sortable) {
-  return make("thead", {}, make("tr", {}, columns.map((c) => {
-    const sorted = sortable && table.title === c.title;
-    const label = titleWithUnit(c.title) + (sorted ? (table.down ? " ▼" : " ▲") : "");
-    return make("th", { scope: "col", class: c.number ? "number" : null, "aria-sort": !sortable ? null : !sorted ? "none" : table.down ? "descending" : "ascending" },
-                sortable ? button(label, () => sortBy(c.title)) : titleWithUnit(c.title));
+/** The titles, each a button that sorts by it. */
+function tableHead(columns) {
+  return make("thead", {}, make("tr", {}, columns.map(({ title, heading, kind }) => {
+    const sorted = table.title === title;
+    return make("th", { scope: "col", class: kind,
+                        "aria-sort": !sorted ? "none" : table.down ? "descending" : "ascending" },
+                button(heading + (sorted ? (table.down ? " ▼" : " ▲") : ""), () => sortBy(title)));
   })));
 }
 
-function tableRow(conflict, columns, live) {
-  const cells = cellsOf(columns, conflict);
-  if (!live) return make("tr", {}, cells);
+function tableRow(conflict, columns) {
   const chosen = conflict === page.conflict;
   return make("tr", { tabindex: -1, "data-id": conflict.id, class: chosen ? "chosen" : null,
                       "data-status": ledgerStatus(conflict) || null,
                       "aria-selected": String(chosen), onclick: () => selectConflict(conflict),
-                      onkeydown: rowKey }, cells);
+                      onkeydown: rowKey }, cellsOf(columns, conflict));
 }
 
 const tableRows = () => [...document.querySelectorAll("#conflicts-table tbody tr")];
@@ -195,7 +193,7 @@ function drawTable() {
   byId("conflicts-table").replaceChildren(
     scrollBox("", make("table", { class: "list", role: "grid", "aria-label":
          "Conflicts. Arrow keys go from row to row, Enter shows the conflict." },
-         tableHead(columns, true), make("tbody", {}, rows.map((c) => tableRow(c, columns, true))))),
+         tableHead(columns), make("tbody", {}, rows.map((c) => tableRow(c, columns))))),
     tablePager(all.length));
   setTabStop();
 }
@@ -224,38 +222,34 @@ function markRow() {
   if (!holder.contains(document.activeElement)) setTabStop();
 }
 
-function filterField(label, name, width) {
-  const input = make("input", { type: "number", step: "any", style: `width:${width}em`,
-                                oninput: (event) => {
-                                  table[name] = event.target.value;
-                                  table.first = 0;
-                                  drawTable();
-                                } });
-  return make("label", {}, `${label} `, input);
-}
-
-/** options: pairs of a value and its words. */
-function filterSelect(label, name, options) {
-  const select = make("select", { onchange: (event) => {
-    table[name] = event.target.value;
+/** A field of the filters with its label. */
+function filterBy(label, name, field, event = "change") {
+  field.addEventListener(event, () => {
+    table[name] = field.value;
     table.first = 0;
     drawTable();
-  } }, options.map(([value, words]) => make("option", { value }, words)));
-  return make("label", {}, `${label} `, select);
+  });
+  return make("label", {}, `${label} `, field);
 }
+
+const filterField = (label, name, width) =>
+    filterBy(label, name, make("input", { type: "number", step: "any", style: `width:${width}em` }), "input");
+
+const selectField = (options) =>
+    make("select", {}, options.map(([value, words]) => make("option", { value }, words)));
 
 /** The statuses of the ledger to choose from. */
 function statusFilter() {
   const found = kLedgerOrder.filter((status) => conflictList().some((c) => ledgerStatus(c) === status));
   if (found.length < 2) return "";
-  return filterSelect("Ledger", "status", [["", "all"], ...(found.includes("accepted") ? [[kNotAccepted, kNotAccepted]] : []),
-                                           ...found.map((status) => [status, status])]);
+  return filterBy("Ledger", "status", selectField([
+    ["", "all"], ...(found.includes("accepted") ? [[kNotAccepted, kNotAccepted]] : []), ...found.map((status) => [status, status])]));
 }
 
 function buildFilters() {
   const sides = [...new Set(conflictList().map((c) => c.side))].sort();
   byId("conflicts-tools").append(
-    filterSelect("Side", "side", [["", "all sides"], ...sides.map((side) => [side, kSides[side] || "unknown"])]),
+    filterBy("Side", "side", selectField([["", "all sides"], ...sides.map((side) => [side, kSides[side] || "unknown"])])),
     statusFilter(), filterField("Chainage from", "from", 6),
     filterField("to", "to", 6),
     conflictList().some((c) => c.encroachment !== null)

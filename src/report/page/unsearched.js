@@ -59,33 +59,18 @@ function unsearchedPatterns() {
           pattern("part-answer", 8, make("circle", { cx: 4, cy: 4, r: 1.3, fill: "#6b7280" }))];
 }
 
-/** The stretches that are in sight, shaded from top to bottom, with words where there is room. */
-function profileUnsearched() {
-  const { top, bottom, height, left, right, width } = profile, out = [];
-  for (const { chainage_from: from, chainage_to: to, has_answer: part } of page.facts.unsearched) {
-    if (to < profile.from || from > profile.to) continue;
-    const x1 = clamp(profileX(from), left, width - right), x2 = clamp(profileX(to), left, width - right);
-    const wide = Math.max(2, x2 - x1), words = part ? "a part only" : "no answer";
-    const middle = x1 + wide / 2, y = (top + height - bottom) / 2;
-    out.push(make("rect", { x: x1, y: top, width: wide, height: height - top - bottom,
-                            class: part ? "part-answer" : "no-answer",
-                            fill: `url(#${part ? "part-answer" : "no-answer"})` }),
-             wide > 16 && make("text", { x: middle, y: y + 4, class: "middle strong halo",
-                 transform: wide > 74 ? null : `rotate(-90 ${middle} ${y})` }, words));
-  }
-  return out.filter(Boolean);
-}
+/** Shaded stretches of the profile on which bodies have no pose. */
+const profileUnsearched = () => profile.shaded(page.facts.unsearched.map(({ chainage_from: from, chainage_to: to, has_answer: part }) =>
+    ({ from, to, kind: part ? "part-answer" : "no-answer", words: part ? "a part only" : "no answer" })));
 
 /** What the shading means and where it is, in words below the profile. */
 function unsearchedLegend() {
-  const swatch = (id) => make("svg", { width: 26, height: 14, class: "swatch", "aria-hidden": "true" },
-      make("rect", { width: 26, height: 14, fill: `url(#${id})`, stroke: "#6b7280" }));
-  const rows = partStretches().map(([which, stretches]) => make("li", {}, swatch("part-answer"),
+  const rows = partStretches().map(([which, stretches]) => make("li", {}, swatch("part-answer", "#6b7280"),
       ` A part only: without ${which}, which ${stretches[0].bodies.length === 1 ? "has" : "have"} no pose at ` +
       `chainage ${stretchWords(stretches)}.`));
   const silent = silentStretches();
   if (silent.length > 0) {
-    rows.unshift(make("li", {}, swatch("no-answer"),
+    rows.unshift(make("li", {}, swatch("no-answer", "#6b7280"),
         ` No answer: the vehicle has no pose at chainage ${stretchWords(silent)}.`));
   }
   return rows;

@@ -67,20 +67,19 @@ function rangeCell(group, axis) {
 }
 
 function groupColumns() {
-  const behind = seenFacts().behind_conflicts > 0;
-  return [
-    ["No.", groupName, false],
-    ["Cubes", (g) => count(g.cubes), true],
-    [`Size (${unitSymbol})`, (g) => sizeOf(g).map((s) => s.toFixed(2)).join(" × "), true],
-    [`Chainage (${unitSymbol})`, chainageCell, true],
-    ["Side", (g) => kSides[g.side], false],
-    [`Lateral (${unitSymbol})`, (g) => rangeCell(g, 1), true],
-    [`Height (${unitSymbol})`, (g) => rangeCell(g, 2), true],
-    behind && ["Behind a conflict", (g) => g.behind_conflict ? "yes" : "no", false],
-    [`Middle x, y, z (${unitSymbol})`, (g) => coordinates(g.middle), true],
-    ["In the result", (g) => `group ${count(g.id)}`, true],
-    ["What to do", groupAdvice, false],
-  ].filter(Boolean).map(([title, cell, number]) => ({ title, cell, number }));
+  return columnsOf([
+    ["No.", groupName],
+    ["Cubes", (g) => count(g.cubes), "number"],
+    [`Size (${unitSymbol})`, (g) => sizeOf(g).map((s) => s.toFixed(2)).join(" × "), "number"],
+    [`Chainage (${unitSymbol})`, chainageCell, "number"],
+    ["Side", (g) => kSides[g.side]],
+    [`Lateral (${unitSymbol})`, (g) => rangeCell(g, 1), "number"],
+    [`Height (${unitSymbol})`, (g) => rangeCell(g, 2), "number"],
+    seenFacts().behind_conflicts > 0 && ["Behind a conflict", (g) => g.behind_conflict ? "yes" : "no"],
+    [`Middle x, y, z (${unitSymbol})`, (g) => coordinates(g.middle), "number"],
+    ["In the result", (g) => `group ${count(g.id)}`, "number"],
+    ["What to do", groupAdvice],
+  ]);
 }
 
 /** What most probably explains a group, and what would decide it. */
@@ -91,15 +90,7 @@ function groupAdvice(group) {
   return "scan it from another place";
 }
 
-function groupRow(group, columns, live) {
-  const choose = live ? { ...chosenBy(() => selectGroup(group)), "data-group": group.id } : {};
-  return make("tr", choose, cellsOf(columns, group));
-}
-
-function groupTable(groups, live) {
-  const columns = groupColumns();
-  return listTable("Places that were not scanned", columns, groups.map((g) => groupRow(g, columns, live)));
-}
+const groupTable = (groups, how) => itemTable("Places that were not scanned", groupColumns(), groups, how);
 
 function markGroupRow() {
   for (const row of document.querySelectorAll("#unseen-table tbody tr")) {
@@ -184,7 +175,8 @@ function buildUnseen() {
   byId("unseen-advice").append(...adviceSentences().map(([title, text]) =>
       make("li", {}, make("strong", {}, `${title}. `), text)));
   const groups = unseenGroups(), shown = groups.slice(0, kShownGroups);
-  byId("unseen-table").append(scrollBox("", groupTable(shown, true)));
+  byId("unseen-table").append(groupTable(shown, (group) =>
+      ({ ...chosenBy(() => selectGroup(group)), "data-group": group.id })));
   if (shown.length < groups.length) {
     byId("unseen-table").append(make("p", { class: "note" },
         `The ${count(shown.length)} largest of ${count(groups.length)} are in the table.`));
@@ -195,45 +187,22 @@ function buildUnseen() {
 /** The rows that paper has. */
 function printedGroups() {
   const groups = unseenGroups(), shown = groups.slice(0, kPrintedGroups);
-  return [groupTable(shown, false), shown.length < groups.length &&
+  return [groupTable(shown), shown.length < groups.length &&
       make("p", { class: "note" }, `${plural(groups.length - shown.length, "more place")} not on paper.`)];
 }
 
 /** Shaded stretches of the profile on which something was not scanned. */
-function profileNotScanned() {
-  const { top, bottom, height, left, right, width } = profile, out = [];
-  let free = -Infinity;
-  for (const [from, to] of seenFacts()?.stretches ?? []) {
-    if (to < profile.from || from > profile.to) continue;
-    const x1 = clamp(profileX(from), left, width - right), x2 = clamp(profileX(to), left, width - right);
-    const wide = Math.max(2, x2 - x1), middle = x1 + wide / 2;
-    out.push(make("rect", { x: x1, y: top, width: wide, height: height - top - bottom,
-                            class: "not-scanned", fill: "url(#not-scanned)" },
-                  make("title", {}, `Not scanned: chainage ${from.toFixed(2)} to ${to.toFixed(2)}`)));
-    if (wide > 16 && middle - free > 90) {
-      free = middle;
-      const y = (top + height - bottom) / 2;
-      out.push(make("text", { x: middle, y: y + 4, class: "middle strong halo",
-                              transform: wide > 84 ? null : `rotate(-90 ${middle} ${y})` }, "not scanned"));
-    }
-  }
-  return out;
-}
+const profileNotScanned = () => profile.shaded((seenFacts()?.stretches ?? []).map(([from, to]) => ({ from, to, kind: "not-scanned",
+    words: "not scanned", title: `Not scanned: chainage ${from.toFixed(2)} to ${to.toFixed(2)}` })), 90);
 
-function notScannedPattern() {
-  return make("pattern", { id: "not-scanned", width: 12, height: 12, patternUnits: "userSpaceOnUse",
-                           patternTransform: "rotate(-45)" },
-              make("rect", { width: 12, height: 12, fill: "#f3effc" }),
-              make("line", { x1: 0, y1: 0, x2: 0, y2: 12, stroke: "#a78bda", "stroke-width": 1.4 }));
-}
+const notScannedPattern = () => hatching("not-scanned", 12, -45, "#f3effc", ["#a78bda", 1.4]);
 
 /** What the shading of stretches that were not scanned means, in words below the profile. */
 function notScannedLegend() {
   const stretches = (seenFacts()?.stretches ?? []).map(([from, to]) =>
       ({ chainage_from: from, chainage_to: to }));
   if (stretches.length === 0) return [];
-  return [make("li", {}, make("svg", { width: 26, height: 14, class: "swatch", "aria-hidden": "true" },
-      make("rect", { width: 26, height: 14, fill: "url(#not-scanned)", stroke: kUnseenColour })),
+  return [make("li", {}, swatch("not-scanned", kUnseenColour),
       ` Not scanned: at chainage ${stretchWords(stretches)} the vehicle reaches places that no beam ` +
       "passed through. The curve knows nothing of them.")];
 }

@@ -21,17 +21,10 @@ function zoomView(factor) {
   scheduleView();
 }
 
-function viewKey(event) {
-  const far = event.shiftKey ? { shiftKey: true } : undefined;
-  const actions = {
-    ArrowLeft: () => turnView(-0.03, 0, far), ArrowRight: () => turnView(0.03, 0, far),
-    ArrowUp: () => turnView(0, -0.03, far), ArrowDown: () => turnView(0, 0.03, far),
-    "+": () => zoomView(0.8), "=": () => zoomView(0.8), "-": () => zoomView(1.25),
-    "0": flyToOverview,
-  };
-  if (!actions[event.key]) return;
-  event.preventDefault();
-  actions[event.key]();
+function viewKeys({ shiftKey }) {
+  const turn = (dx, dy) => () => turnView(dx, dy, shiftKey ? { shiftKey } : undefined);
+  return { ArrowLeft: turn(-0.03, 0), ArrowRight: turn(0.03, 0), ArrowUp: turn(0, -0.03), ArrowDown: turn(0, 0.03),
+           ...zoomKeys(() => zoomView(0.8), () => zoomView(1.25), flyToOverview) };
 }
 
 function check(label, id, value, change) {
@@ -128,7 +121,7 @@ function buildView() {
     viewNote());
   watchPointer(over, turnView, (factor) => zoomView(factor),
                (x, y) => pickNumber(view.places, over, x, y));
-  over.addEventListener("keydown", viewKey);
+  onKeys(over, viewKeys);
   canvas.addEventListener("webglcontextlost", () => { byId("view-note").textContent =
       "The browser gave up the 3-D view. Load the page again to see it."; });
   sizeView();
