@@ -1,5 +1,7 @@
 #include "report/section_view.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -12,6 +14,7 @@
 #include "core/section/section_intrusions.hpp"
 #include "core/util/format.hpp"
 #include "io/files/xxh64.hpp"
+#include "io/result/conflicts/conflict_words.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/report_facts.hpp"
@@ -272,33 +275,15 @@ std::string SectionView::caution() const {
 
 namespace {
 
-const char* words_of(Side side) {
-  switch (side) {
-    case Side::kLeft:
-      return "on the left";
-    case Side::kRight:
-      return "on the right";
-    case Side::kAbove:
-      return "above";
-    default:
-      return "below";
-  }
-}
+/// Whether something comes from the left or the right, and not from above or below.
+bool is_across(Side side) { return side == Side::kLeft || side == Side::kRight; }
 
 /// The border up to which everything has to be cleared for the load: a y on the left and right, a z
 /// above and below.
 double cleared_to(const SectionIntrusion& intrusion, double cell) {
-  const double j = intrusion.cell[0], k = intrusion.cell[1];
-  switch (intrusion.side) {
-    case Side::kLeft:
-      return j * cell + intrusion.depth;
-    case Side::kRight:
-      return (j + 1) * cell - intrusion.depth;
-    case Side::kAbove:
-      return k * cell + intrusion.depth;
-    default:
-      return (k + 1) * cell - intrusion.depth;
-  }
+  const double at = intrusion.cell[is_across(intrusion.side) ? 0 : 1];
+  const bool is_beyond = intrusion.side == Side::kLeft || intrusion.side == Side::kAbove;
+  return is_beyond ? at * cell + intrusion.depth : (at + 1) * cell - intrusion.depth;
 }
 
 /// Two digits, rounded away from zero, so that what is cleared is enough.
@@ -312,8 +297,7 @@ std::string outwards(double value) {
 
 /// How wide, or for what comes from above or below how high, an outline is.
 double size_across(std::span<const OutlinePoint> outline, Side side) {
-  const auto axis =
-      side == Side::kLeft || side == Side::kRight ? &OutlinePoint::y : &OutlinePoint::z;
+  const auto axis = is_across(side) ? &OutlinePoint::y : &OutlinePoint::z;
   const auto [least, most] = std::ranges::minmax(outline, {}, axis);
   return most.*axis - least.*axis;
 }
@@ -322,20 +306,18 @@ double size_across(std::span<const OutlinePoint> outline, Side side) {
 std::string remedy_of(const SectionIntrusion& in, double cell, const std::string& unit,
                       bool gives_way) {
   const std::string to = outwards(cleared_to(in, cell)) + " " + unit;
-  const std::string depth = outwards(in.depth) + " " + unit;
-  const std::string heights =
-      " between z = " + format_brief(in.z_from) + " and " + format_brief(in.z_to) + " " + unit;
-  switch (in.side) {
-    case Side::kLeft:
-    case Side::kRight:
-      return "clear " + std::string(words_of(in.side)) + " to y = " + to + heights +
-             (gives_way ? ", or make the load " + depth + " narrower there" : "");
-    case Side::kAbove:
-      return "clear up to z = " + to + (gives_way ? ", or make the load " + depth + " lower" : "");
-    default:
-      return "clear down to z = " + to +
-             (gives_way ? ", or begin the load " + depth + " higher" : "");
+  const auto or_smaller = [&](const char* begin, const char* end) {
+    return gives_way
+               ? fmt::format(", or {} the load {} {} {}", begin, outwards(in.depth), unit, end)
+               : "";
+  };
+  if (is_across(in.side)) {
+    return fmt::format("clear {} to y = {} between z = {} and {} {}{}", side_words(in.side), to,
+                       format_brief(in.z_from), format_brief(in.z_to), unit,
+                       or_smaller("make", "narrower there"));
   }
+  return in.side == Side::kAbove ? "clear up to z = " + to + or_smaller("make", "lower")
+                                 : "clear down to z = " + to + or_smaller("begin", "higher");
 }
 
 std::string capitalized(std::string words) {

@@ -73,8 +73,6 @@ class SectionView {
   /// Whether each cell of the whole path, in its order, stops a load that is judged where it is
   /// blocked; empty without an outline.
   const std::vector<bool>& stopping() const { return stopping_; }
-  const std::vector<SectionBand>& bands() const { return bands_; }
-  const std::vector<SectionStretch>& stretches() const { return stretches_; }
 
   /// The cells of each bin that are not known, because no beam crossed them.
   const SectionCells& not_known() const;
@@ -109,7 +107,6 @@ class SectionView {
   std::string remedy(const SectionIntrusion& intrusion, const ShownLoad& load) const;
   void add_question(Json& json) const;
   Json json_of_check() const;
-  std::string sentence_of_widths() const;
 
   const Section& section_;
   const SectionPicture& picture_;
