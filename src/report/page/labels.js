@@ -13,6 +13,14 @@ function setFont(context, pixels, weight = "") {
   context.font = `${weight} ${pixels}px system-ui, "DejaVu Sans", Arial, sans-serif`;
 }
 
+/** A line through those of the places that are in front of the eye. */
+function strokeThrough(context, places, style, width) {
+  Object.assign(context, { strokeStyle: style, lineWidth: width, lineJoin: "round" });
+  context.beginPath();
+  for (const place of places) if (place) context.lineTo(place[0], place[1]);
+  context.stroke();
+}
+
 /** A length of 1, 2 or 5 times a power of ten, at most `most`. */
 function roundLength(most) {
   const power = 10 ** Math.floor(Math.log10(most));
@@ -37,12 +45,7 @@ function drawDistance(context, painter, conflict, vehicle, unitSize) {
   const distance = conflict.least_distance, inside = isInside(distance);
   // A wall of another part may be nearer to what lies inside.
   if (!inside || near.distance > -0.9 * distance) {
-    context.strokeStyle = "#111827";
-    context.lineWidth = 1.6 * unitSize;
-    context.beginPath();
-    context.moveTo(a[0], a[1]);
-    context.lineTo(b[0], b[1]);
-    context.stroke();
+    strokeThrough(context, [a, b], "#111827", 1.6 * unitSize);
   }
   drawRing(context, a, unitSize);
   context.fillStyle = "#111827";

@@ -36,18 +36,17 @@ function planCamera(canvas) {
            halfWidth: plan.halfWidth, halfHeight: plan.halfWidth * canvas.height / canvas.width };
 }
 
+/** Where the places of shown poses are in the picture; of a long path some thousand of them, and its end. */
+function projectedPath(painter, from = 0, to = page.poses.count - 1) {
+  const stride = Math.max(1, Math.floor(page.poses.count / 3000)), out = [];
+  for (let i = from; i < to; i += stride) out.push(painter.project(page.path[i]));
+  if (to >= from) out.push(painter.project(page.path[to]));
+  return out;
+}
+
 function drawPath(context, painter, unitSize) {
-  const n = page.poses.count, stride = Math.max(1, Math.floor(n / 3000));
   for (const [style, wide] of [["rgba(255,255,255,0.85)", 4.5], ["#111827", 1.8]]) {
-    context.strokeStyle = style;
-    context.lineWidth = wide * unitSize;
-    context.lineJoin = "round";
-    context.beginPath();
-    for (let i = 0; i < n; i += i + stride < n || i === n - 1 ? stride : n - 1 - i) {
-      const at = painter.project(page.path[i]);
-      if (at) context.lineTo(at[0], at[1]);
-    }
-    context.stroke();
+    strokeThrough(context, projectedPath(painter), style, wide * unitSize);
   }
   drawUnsearchedPath(context, painter, unitSize);
 }
@@ -151,12 +150,7 @@ function drawAxes(context, unitSize) {
   setFont(context, 12 * unitSize, "600");
   const axes = plan.turned ? [["x", 0, 1], ["y", 1, 0]] : [["x", 1, 0], ["y", 0, -1]];
   for (const [name, dx, dy] of axes) {
-    context.strokeStyle = "#111827";  // haloText has its own
-    context.lineWidth = 1.6 * unitSize;
-    context.beginPath();
-    context.moveTo(x - long / 2, y);
-    context.lineTo(x - long / 2 + dx * long, y + dy * long);
-    context.stroke();
+    strokeThrough(context, [[x - long / 2, y], [x - long / 2 + dx * long, y + dy * long]], "#111827", 1.6 * unitSize);
     haloText(context, name, x - long / 2 + dx * (long + 9 * unitSize),
              y + dy * (long + 9 * unitSize) + 4 * unitSize, "center");
   }

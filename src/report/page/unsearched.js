@@ -78,22 +78,14 @@ function unsearchedLegend() {
 
 /** Dashes on the plan's path where nothing was searched. */
 function drawUnsearchedPath(context, painter, unitSize) {
-  const n = page.poses.count, stride = Math.max(1, Math.floor(n / 3000));
+  const n = page.poses.count;
   context.save();
-  context.strokeStyle = "#fff";
-  context.lineWidth = 2.6 * unitSize;
   context.setLineDash([5 * unitSize, 5 * unitSize]);
   for (let first = 0; first < n; ++first) {
     if (isSearched(first)) continue;
     let last = first;
     while (last + 1 < n && !isSearched(last + 1)) ++last;
-    const from = Math.max(0, first - 1), to = Math.min(n - 1, last + 1);
-    context.beginPath();
-    for (let i = from; i <= to; i += i + stride < to || i === to ? stride : to - i) {
-      const at = painter.project(page.path[i]);
-      if (at) context.lineTo(at[0], at[1]);
-    }
-    context.stroke();
+    strokeThrough(context, projectedPath(painter, Math.max(0, first - 1), Math.min(n - 1, last + 1)), "#fff", 2.6 * unitSize);
     first = last;
   }
   context.restore();
