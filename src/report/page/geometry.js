@@ -50,26 +50,38 @@ function movedBack(pose, p) {
   return [0, 1, 2].map((k) => r[k] * d[0] + r[3 + k] * d[1] + r[6 + k] * d[2]);
 }
 
-/** Of the pose with that index in the trajectory, or the next one that the page has. */
-function shownPose(index) {
-  const list = page.poses.index;
-  let lo = 0, hi = page.poses.count - 1;
+/** The index of the first value of an ascending list that is there already, or else the list's length. */
+function firstThat(list, isThere) {
+  let lo = 0, hi = list.length;
   while (lo < hi) {
     const middle = lo + hi >> 1;
-    if (list[middle] < index) lo = middle + 1; else hi = middle;
+    if (isThere(list[middle])) hi = middle; else lo = middle + 1;
   }
   return lo;
 }
 
+/** The same among the shown poses; the last of them where no value is there. */
+const firstPoseThat = (list, isThere) => clamp(firstThat(list ?? [], isThere), 0, Math.max(0, page.poses.count - 1));
+
+/** Of the pose with that index in the trajectory, or the next one that the page has. */
+const shownPose = (index) => firstPoseThat(page.poses.index, (i) => i >= index);
+
 /** The shown pose nearest to a chainage; of equals the first. */
 function poseAtChainage(chainage) {
-  const list = page.poses.chainage;
-  let lo = 0, hi = list.length - 1;
-  while (lo < hi) {
-    const middle = lo + hi >> 1;
-    if (list[middle] < chainage) lo = middle + 1; else hi = middle;
+  const list = page.poses.chainage, at = firstPoseThat(list, (c) => c >= chainage);
+  return at > 0 && chainage - list[at - 1] <= list[at] - chainage ? at - 1 : at;
+}
+
+/** The box around places; nothing where there are none. */
+function boxAround(places) {
+  const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
+  for (const place of places) {
+    place.forEach((v, k) => {
+      lo[k] = Math.min(lo[k], v);
+      hi[k] = Math.max(hi[k], v);
+    });
   }
-  return lo > 0 && chainage - list[lo - 1] <= list[lo] - chainage ? lo - 1 : lo;
+  return places.length > 0 ? { lo, hi } : undefined;
 }
 
 /** Unit axis of the model's frame, by its number: +x, -x, +y, -y, +z, -z. */
@@ -81,18 +93,9 @@ function axisOf(number) {
 
 /** Around all bodies at shown pose i, in the frame of a pose. */
 function jointBox(i, pose) {
-  const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];
-  for (const { body, pose: its } of bodiesAt(i)) {
-    const box = bodyFacts()[body].box;
-    for (let corner = 0; corner < 8; ++corner) {
-      const m = [0, 1, 2].map((k) => (corner >> k & 1 ? box.hi : box.lo)[k]);
-      movedBack(pose, moved(its, m)).forEach((v, k) => {
-        lo[k] = Math.min(lo[k], v);
-        hi[k] = Math.max(hi[k], v);
-      });
-    }
-  }
-  return lo[0] <= hi[0] ? { lo, hi } : { lo: [0, 0, 0], hi: [0, 0, 0] };
+  const corners = ({ lo, hi }) => [...Array(8).keys()].map((corner) => [0, 1, 2].map((k) => (corner >> k & 1 ? hi : lo)[k]));
+  return boxAround(bodiesAt(i).flatMap(({ body, pose: its }) =>
+      corners(bodyFacts()[body].box).map((m) => movedBack(pose, moved(its, m))))) ?? { lo: [0, 0, 0], hi: [0, 0, 0] };
 }
 
 /**

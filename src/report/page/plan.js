@@ -2,22 +2,11 @@
 
 const plan = { centre: [0, 0], halfWidth: 10, turned: false, due: false };
 
-function planBox() {
-  const lo = [Infinity, Infinity], hi = [-Infinity, -Infinity];
-  for (const chunk of [...page.environment.chunks, ...page.points.chunks]) {
-    for (let k = 0; k < 2; ++k) {
-      lo[k] = Math.min(lo[k], chunk.centre[k] - chunk.half[k]);
-      hi[k] = Math.max(hi[k], chunk.centre[k] + chunk.half[k]);
-    }
-  }
-  for (const place of page.path) {
-    for (let k = 0; k < 2; ++k) {
-      lo[k] = Math.min(lo[k], place[k] - 1);
-      hi[k] = Math.max(hi[k], place[k] + 1);
-    }
-  }
-  return lo[0] <= hi[0] ? { lo, hi } : { lo: [-1, -1], hi: [1, 1] };
-}
+/** Around all that the plan shows, and a metre beside the path. */
+const planBox = () => boxAround([
+  ...[...page.environment.chunks, ...page.points.chunks].flatMap(({ centre, half }) => [plus(centre, half, -1), plus(centre, half)]),
+  ...page.path.flatMap((place) => [plus(place, [1, 1, 0], -1), plus(place, [1, 1, 0])]),
+]) ?? { lo: [-1, -1], hi: [1, 1] };
 
 /** A view of all; the longer side lies across the page. */
 function fitPlan() {

@@ -181,9 +181,8 @@ function fittingDistance(target, yaw, pitch) {
 }
 
 function flyToOverview() {
-  const lo = [0, 1, 2].map((k) => page.path.reduce((a, p) => Math.min(a, p[k]), Infinity));
-  const hi = [0, 1, 2].map((k) => page.path.reduce((a, p) => Math.max(a, p[k]), -Infinity));
   if (page.path.length === 0) return;
+  const { lo, hi } = boxAround(page.path);
   const target = times(plus(lo, hi), 0.5), pitch = 0.8;
   // Across the path's longer side, so that it lies along the picture.
   const yaw = hi[1] - lo[1] > hi[0] - lo[0] ? -0.35 : -Math.PI / 2 - 0.35;

@@ -40,14 +40,10 @@ const station = (v) => metres(v, 2);
 function stationAt(at) {
   const { chainage, labels: { station: stations } } = page.poses;
   if (!stations || stations.length === 0) return null;
-  let lo = 0, hi = chainage.length;  // the first pose behind it
-  while (lo < hi) {
-    const middle = lo + hi >> 1;
-    if (chainage[middle] <= at) lo = middle + 1; else hi = middle;
-  }
-  if (lo === 0 || lo === chainage.length) return stations[lo === 0 ? 0 : lo - 1];
-  const part = (at - chainage[lo - 1]) / (chainage[lo] - chainage[lo - 1]);
-  return stations[lo - 1] + part * (stations[lo] - stations[lo - 1]);
+  const behind = firstThat(chainage, (c) => c > at);
+  if (behind === 0 || behind === chainage.length) return stations[behind === 0 ? 0 : behind - 1];
+  const part = (at - chainage[behind - 1]) / (chainage[behind] - chainage[behind - 1]);
+  return stations[behind - 1] + part * (stations[behind] - stations[behind - 1]);
 }
 /** " (station 1234.50 m)" beside a chainage, which is what a client knows a place by; or nothing. */
 const besideChainage = (chainage) => stationAt(chainage) === null ? ""
