@@ -34,7 +34,7 @@ function conflictFacts(conflict) {
     conflict.body !== undefined && ["Body", conflict.body],
     ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],
-  ].filter(Boolean);
+  ];
   if (conflict.least_distance !== null) {
     rows.push(["Distance", `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`],
               ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is) ||
@@ -54,7 +54,7 @@ function conflictFacts(conflict) {
   rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
             ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
              nearestPoseWords(conflict)]);
-  return factsTable(...rows.map(([name, value]) => factRow(name, value)));
+  return factsTable(...rows);
 }
 
 /** The three pictures, drawn at once. width: of each in pixels. */

@@ -50,10 +50,9 @@ const seeWarnings = (lead, warnings) => warnings.length > 0 &&
 const warningsList = (texts) => texts.length === 0 ? ""
     : make("ul", { class: "warnings", "aria-label": "Warnings" }, texts.map((text) => make("li", {}, text)));
 
-const factRow = (name, ...value) => make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...value));
-
-/** A table of names and values. */
-const factsTable = (...rows) => make("table", { class: "facts" }, make("tbody", {}, ...rows));
+/** A table of names and values. rows: [name, ...value]; those that are left out are falsy. */
+const factsTable = (...rows) => make("table", { class: "facts" }, make("tbody", {}, rows.filter(Boolean).map(([name, ...value]) =>
+    make("tr", {}, make("th", { scope: "row" }, name), make("td", {}, ...value)))));
 
 /** Numbers that a person compares with the load and the place, because nothing in the files shows whether they are right. */
 const compareOnSite = (what, ...rows) => make("div", { class: "basis", id: "on-site" },

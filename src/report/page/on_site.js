@@ -72,11 +72,11 @@ function vehicleBox() {
   if (!first) return "";
   const path = page.facts.inputs.trajectory;
   return compareOnSite("the vehicle, its load and the place",
-      factRow(bodies.length > 1 ? "Bodies" : "Vehicle", vehicleOnSite(bodies)),
-      factRow("Begins at", placeOnSite(first)),
-      factRow("Ends at", placeOnSite(last)),
-      factRow("Drives", directionOnSite(page.facts.on_site)),
-      factRow("Tightest bend", bend ? `radius of about ${bend.radius < 100 ? station(bend.radius) : shortLength(+bend.radius.toPrecision(3))} ` +
+      [bodies.length > 1 ? "Bodies" : "Vehicle", vehicleOnSite(bodies)],
+      ["Begins at", placeOnSite(first)],
+      ["Ends at", placeOnSite(last)],
+      ["Drives", directionOnSite(page.facts.on_site)],
+      ["Tightest bend", bend ? `radius of about ${bend.radius < 100 ? station(bend.radius) : shortLength(+bend.radius.toPrecision(3))} ` +
                                       `at chainage ${placeWords(bend.chainage)}, measured over ${station(bend.over)} of path`
-                                    : `none on ${station(path.length)} of path`));
+                                    : `none on ${station(path.length)} of path`]);
 }

@@ -18,12 +18,12 @@ function loadBox() {
   const { rear, front, pivots, length, load_poses: poses } = section.facts;
   const from = (x) => `${station(Math.abs(x))} ${x < 0 ? "behind" : "ahead of"}`;
   return compareOnSite("the load and the place",
-      factRow("Load", `${station(front - rear)} long, from ${from(rear)} to ${from(front)} ` +
-          (pivots ? "its origin" : "the path's pose")),
-      pivots ? factRow("Pivots", `${station(Math.abs(pivots[0] - pivots[1]))} apart, ${from(pivots[0])} and ` +
-          `${from(pivots[1])} the path's pose`) : "",
-      factRow("Path", `${station(length)} long, with ${plural(poses, "pose")} of the load; left is left when looking ` +
-          "from its beginning to its end"));
+      ["Load", `${station(front - rear)} long, from ${from(rear)} to ${from(front)} ` +
+          (pivots ? "its origin" : "the path's pose")],
+      pivots && ["Pivots", `${station(Math.abs(pivots[0] - pivots[1]))} apart, ${from(pivots[0])} and ` +
+          `${from(pivots[1])} the path's pose`],
+      ["Path", `${station(length)} long, with ${plural(poses, "pose")} of the load; left is left when looking ` +
+          "from its beginning to its end"]);
 }
 
 function buildQuestion() {
@@ -42,8 +42,8 @@ function buildQuestion() {
     ["Poses", `${count(f.load_poses)} of ${count(f.poses)} on ${station(f.length)} of path`],
     ["Environment", f.environment_name && `${f.environment_name}${f.scans ? `: ${scanWords(f.scans)}` : ""} `, make("code", {}, f.environment_hash)],
     ["Path", f.trajectory_name && `${f.trajectory_name} `, make("code", {}, f.trajectory_hash)],
-  ].filter(Boolean);
-  byId("question-body").append(factsTable(...rows.map(([name, ...values]) => factRow(name, ...values))));
+  ];
+  byId("question-body").append(factsTable(...rows));
   if (check && check.rows.length > 0) byId("question-body").append(...outlinesTable(check));
 }
 

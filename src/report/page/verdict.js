@@ -356,25 +356,24 @@ function questionTable() {
   const box = inputs.model.box;
   const size = box.hi.map((h, k) => (h - box.lo[k]).toFixed(2)).join(" × ");
   return factsTable(
-    factRow("Question", `Does anything come closer than ${shortLength(query.radius)} to the ` +
+    ["Question", `Does anything come closer than ${shortLength(query.radius)} to the ` +
             (query.between_poses ? "vehicle, at its poses and between them?"
-                                 : "vehicle, at any of its poses?")),
-    factRow("Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points of ` +
+                                 : "vehicle, at any of its poses?")],
+    ["Environment", `${inputs.environment.name}: ${count(inputs.environment.points)} points of ` +
             `${scanWords(inputs.environment.scans)}. CRS: ${crsName(inputs.environment.crs_wkt)}. ` +
-            `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)),
-    inputs.model.bodies ? factRow("Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash))
-        : factRow("Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +
-                  `${size} ${unitSymbol}.${solidText(inputs.model)} `, hash(inputs.model.hash)),
-    factRow("Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
+            `Unit: ${unit === "unknown" ? "taken as metre" : unit}. `, hash(inputs.environment.hash)],
+    inputs.model.bodies ? ["Vehicle (bodies)", bodyList(inputs.model), hash(inputs.model.hash)]
+        : ["Vehicle (model)", `${inputs.model.name}: ${modelParts(inputs.model)}, ` +
+           `${size} ${unitSymbol}.${solidText(inputs.model)} `, hash(inputs.model.hash)],
+    ["Path", `${inputs.trajectory.name}: ${count(inputs.trajectory.poses)} poses, ` +
             `${station(inputs.trajectory.length)} long. ` +
             (inputs.trajectory.made_by ? `${capital(`made by clearway trajectory ${inputs.trajectory.made_by}`)}. ` : ""),
-            hash(inputs.trajectory.hash)),
-    factRow("Result", `${inputs.result.name}. `, hash(inputs.result.hash)),
-    factRow("Asked for", askedFor(query)),
-    page.facts.floor === null ? ""
-        : factRow("Floor", `Only what lies at ${page.facts.floor.words} or above is judged. `,
-                  make("code", {}, "--floor")),
-    page.facts.ignored === null ? "" : factRow("Ignored", ignoredText(page.facts.ignored)));
+            hash(inputs.trajectory.hash)],
+    ["Result", `${inputs.result.name}. `, hash(inputs.result.hash)],
+    ["Asked for", askedFor(query)],
+    page.facts.floor !== null && ["Floor", `Only what lies at ${page.facts.floor.words} or above is judged. `,
+                                       make("code", {}, "--floor")],
+    page.facts.ignored !== null && ["Ignored", ignoredText(page.facts.ignored)]);
 }
 
 /** What the search took the model, or a body, for. */
