@@ -384,11 +384,10 @@ class LeastShift::UnitSearch {
 
   Range range_of(std::uint32_t begin, std::uint32_t end) const;
   void make_children(std::uint32_t range);
-  Bounds seen(const Range& range, const PointBlocks::Node& node) const;
-  Bounds seen(const Range& range, const Vec3& place) const;
+  Bounds seen(const Range& range, const Box& box) const;
 
   void push(std::uint32_t range, std::uint32_t node) {
-    const Bounds bounds = seen(ranges_[range], blocks_.node(node));
+    const Bounds bounds = seen(ranges_[range], blocks_.box(node));
     const Interval found = shape_.may_collide(bounds, shift_, most_);
     if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) return;
     put({found.to, found.from, range, node});
@@ -496,12 +495,9 @@ void LeastShift::UnitSearch::make_children(std::uint32_t range) {
   }
 }
 
-LeastShift::Bounds LeastShift::UnitSearch::seen(const Range& range,
-                                                const PointBlocks::Node& node) const {
-  const Box box = position_box(blocks_.quantisation(), node.box);
+LeastShift::Bounds LeastShift::UnitSearch::seen(const Range& range, const Box& box) const {
   const Vec3 lo = difference(box.lo, range.centre), hi = difference(box.hi, range.centre);
-  const Vec3 centre = 0.5 * (lo + hi), half = 0.5 * (hi - lo), size = hi - lo;
-  const Vec3 thin{node.thin[0], node.thin[1], node.thin[2]};
+  const Vec3 centre = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
   Bounds out{{}, range.way, range.most_way};
   for (int k = 0; k < 3; ++k) {
     const double* turn = range.turn[k];
@@ -513,49 +509,17 @@ LeastShift::Bounds LeastShift::UnitSearch::seen(const Range& range,
       numbers += std::abs(turn[j]) * far;
       change += range.change[k][j] * far;
     }
-    double from = middle - extent, to = middle + extent;
-    if (node.has_thin()) {
-      const double along = turn[0] * thin.x + turn[1] * thin.y + turn[2] * thin.z;
-      double corner = 0, rest_from = 0, rest_to = 0;
-      for (int j = 0; j < 3; ++j) {
-        const double rest = (turn[j] - along * thin[j]) * size[j];
-        corner += turn[j] * lo[j];
-        (rest > 0 ? rest_to : rest_from) += rest;
-      }
-      const double a = along * node.thin_from, b = along * node.thin_to;
-      from = std::max(from, corner + std::min(a, b) + rest_from);
-      to = std::min(to, corner + std::max(a, b) + rest_to);
-    }
     const double slack = change + kShareOfNumbers * (numbers + change + std::abs(range.from[k]) +
                                                      std::abs(range.to[k]));
-    out.box.lo[k] = from + range.from[k] - slack;
-    out.box.hi[k] = to + range.to[k] + slack;
-  }
-  return out;
-}
-
-LeastShift::Bounds LeastShift::UnitSearch::seen(const Range& range, const Vec3& place) const {
-  const Vec3 c = difference(place, range.centre);
-  Bounds out{{}, range.way, range.most_way};
-  for (int k = 0; k < 3; ++k) {
-    const double* turn = range.turn[k];
-    double at = 0, numbers = 0, change = 0;
-    for (int j = 0; j < 3; ++j) {
-      at += turn[j] * c[j];
-      numbers += std::abs(turn[j] * c[j]);
-      change += range.change[k][j] * std::abs(c[j]);
-    }
-    const double slack = change + kShareOfNumbers * (numbers + change + std::abs(range.from[k]) +
-                                                     std::abs(range.to[k]));
-    out.box.lo[k] = at + range.from[k] - slack;
-    out.box.hi[k] = at + range.to[k] + slack;
+    out.box.lo[k] = middle - extent + range.from[k] - slack;
+    out.box.hi[k] = middle + extent + range.to[k] + slack;
   }
   return out;
 }
 
 void LeastShift::UnitSearch::look_at(const Item& item) {
   const PointBlocks::Node& node = blocks_.node(item.node);
-  const Bounds bounds = seen(ranges_[item.range], node);
+  const Bounds bounds = seen(ranges_[item.range], blocks_.box(item.node));
   const Vec3 half = 0.5 * bounds.box.size();
   const double size = std::max({half.x, half.y, half.z});
   if (size <= 8 * radius_) {
@@ -595,7 +559,7 @@ double LeastShift::UnitSearch::look_at_points(const Range& range, const PointBlo
   for (std::uint32_t p = node.begin; p < node.end && shift_ <= most_; ++p) {
     const Vec3 place = blocks_.place(p);
     if (!range.is_one()) {
-      const Interval found = shape_.may_collide(seen(range, place), shift_, most_);
+      const Interval found = shape_.may_collide(seen(range, {place, place}), shift_, most_);
       if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) continue;
       if (found.from > shift_) {
         until = std::min(until, found.from);

@@ -19,13 +19,7 @@ class PointBlocks {
 
   struct Node {
     QuantumBox box;
-    /// A direction in which the points are thin, and where they lie along it, counted from the
-    /// lower corner of the box; the zero vector where it is not known.
-    float thin[3];
     std::uint32_t begin, end;  ///< range of its points
-    double thin_from, thin_to;
-
-    bool has_thin() const { return thin_from <= thin_to; }
   };
   /// The most bytes that the nodes take for a point, and for one tree more.
   static constexpr std::uint64_t kBytesOfPoint = 2 * sizeof(Node) / (kBlock / 2);
@@ -42,13 +36,11 @@ class PointBlocks {
     const std::int32_t* q = points_[point].q;
     return position(quantisation_, q[0], q[1], q[2]);
   }
-  /// The box of all points.
-  Box box() const { return position_box(quantisation_, nodes_[0].box); }
-  const Quantisation& quantisation() const { return quantisation_; }
+  /// The box of the points of a node.
+  Box box(std::uint32_t index) const { return position_box(quantisation_, nodes_[index].box); }
 
  private:
   void build(std::uint32_t index, std::uint32_t begin, std::uint32_t end);
-  void find_thin(Node& node) const;
 
   const Quantisation& quantisation_;
   std::span<QuantumPoint> points_;
