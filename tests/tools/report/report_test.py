@@ -176,6 +176,10 @@ class Reports(Pages):
         self.gives(page, {"tableColumns().some((c) => c.title === 'Class')": len(classes) > 1,
                           "[0, 0.0004, 0.00002].map((v) => metres(v))": ["0.000 m", "0.0004 m", "< 0.0001 m"],
                           "[-0.001, -1.5, 2].map(signed)": ["0.00", "\u22121.50", "+2.00"]})
+        # A chosen conflict that is out of sight takes no number away from a bar at the edge.
+        bars = """Object.assign(new Chart(40), { from: 10, to: 20 }).bars([[0, true], [10.2, false]].map(([from, chosen]) =>
+            ({ from, to: from + 0.1, label: "1", chosen, look: () => ({}) })))"""
+        self.gives(page, {f"{bars}.map((bar) => bar.querySelectorAll('text').length)": [1]})
 
     def check_table(self, page, conflicts):
         # Previous and Next where there is no other conflict; what a sorted title says.

@@ -182,11 +182,12 @@ void OpenedResult::read_model_again(const ModelOptions& again) {
   const ResultHeader& header = result.reader().header();
   const std::uint64_t hash = hash_of_model(model);
   if (model.vertices.size() == header.model_points && hash == header.model_hash) return;
-  refuse(files_.model.string(),
-         "is not the model of " + result.reader().name() + ": it has " +
-             format_count(model.vertices.size()) + " points with the hash " + hash_text(hash) +
-             ", expected " + format_count(header.model_points) + " with the hash " +
-             hash_text(header.model_hash) + "; give the file of the run, with the same options");
+  refuse(files_.model.string(), "is not the model of " + result.reader().name() + ": it has " +
+                                    format_count(model.vertices.size()) + " points with the hash " +
+                                    hash_text(hash) + ", expected " +
+                                    format_count(header.model_points) + " with the hash " +
+                                    hash_text(header.model_hash) +
+                                    "; give --model the file of the run, with the same options");
 }
 
 /// The run took each body for what its file holds, or all bodies for what it was told. Only the
