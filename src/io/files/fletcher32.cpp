@@ -82,4 +82,10 @@ std::uint32_t fletcher32(std::span<const std::byte> bytes) {
   return folded(sums.second, all_zero) << 16 | folded(sums.first, all_zero);
 }
 
+void seal_fletcher32(std::span<std::byte> chunk) {
+  const auto values = chunk.first(chunk.size() - sizeof(std::uint32_t));
+  const std::uint32_t checksum = fletcher32(values);
+  std::memcpy(values.data() + values.size(), &checksum, sizeof checksum);
+}
+
 }  // namespace clearway

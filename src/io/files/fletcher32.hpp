@@ -10,4 +10,8 @@ namespace clearway {
 /// calls HDF5.
 std::uint32_t fletcher32(std::span<const std::byte> bytes);
 
+/// Puts the checksum of a chunk's values behind them, into the last four bytes of the chunk, as the
+/// filter does.
+void seal_fletcher32(std::span<std::byte> chunk);
+
 }  // namespace clearway

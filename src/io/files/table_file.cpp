@@ -191,10 +191,8 @@ void TablePiece::seal() {
   for (Column& column : columns_) {
     for (Chunk& chunk : column.chunks) {
       const std::span all(chunk.bytes.get(), column.chunk_bytes + kChecksumBytes);
-      const std::span values = all.first(column.chunk_bytes);
-      std::ranges::fill(values.subspan(chunk.used), std::byte{0});
-      const std::uint32_t checksum = fletcher32(values);
-      std::memcpy(values.data() + values.size(), &checksum, kChecksumBytes);
+      std::ranges::fill(all.subspan(chunk.used), std::byte{0});
+      seal_fletcher32(all);
       chunk.xxh64 = xxh64(all);
     }
   }

@@ -171,9 +171,7 @@ void seal_cell(PackedCell& packed, std::span<const BlockBox> blocks, std::uint32
   std::vector<std::byte>& boxes = packed.chunks[kBlocks];
   boxes.resize(block_chunk_bytes(cell_points));
   std::memcpy(boxes.data(), blocks.data(), blocks.size_bytes());
-  const std::span values(boxes.data(), boxes.size() - sizeof(std::uint32_t));
-  const std::uint32_t checksum = fletcher32(values);
-  std::memcpy(boxes.data() + values.size(), &checksum, sizeof checksum);
+  seal_fletcher32(boxes);
   for (std::size_t i = 0; i < kPointColumns; ++i) packed.xxh64[i] = xxh64(packed.chunks[i]);
 }
 

@@ -43,6 +43,11 @@ ModelOptions model_options_of(const ResultHeader& header, ModelOptions options) 
   return options;
 }
 
+Result open_result(const SearchedFiles& files) {
+  check_is_trajectory(files.trajectory);
+  return Result(files.result);
+}
+
 }  // namespace
 
 void add_conflict_options(CLI::App& command, ConflictCommand& options) {
@@ -124,9 +129,7 @@ void add_result_inputs(CLI::App& command, ConflictCommand& options) {
 }
 
 OpenedResult::OpenedResult(ConflictCommand& options, const SearchedFiles& files)
-    : result((check_is_trajectory(files.trajectory), files.result)),
-      options_(options),
-      files_(files) {
+    : result(open_result(files)), options_(options), files_(files) {
   const std::string& name = result.reader().name();
   if (result.bodies().empty() && !files.vehicle.empty()) {
     throw InputError(name + ": is of one model; --vehicle is for results of several bodies");
