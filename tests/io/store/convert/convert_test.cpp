@@ -169,7 +169,7 @@ TEST_CASE("too little memory is refused with the least that will do") {
   check_says(scan.refusal<ResourceError>(), "at least 224.0 MiB");
   scan.options.memory_bytes = kLeastConversionMemory;
   scan.options.regular_size = 1;
-  check_says(scan.refusal<ResourceError>(), "120000 cells need at least 227 MiB");
+  check_says(scan.refusal<ResourceError>(), "120000 cells need at least 229 MiB");
   check_equal(scan.files(), {"a.las"});
   scan.options.regular_size.reset();
   check_equal(scan.refusal<Error>(), "");
