@@ -19,6 +19,7 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/point_classes.hpp"
 #include "core/query/verdict_words.hpp"
+#include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/files/json.hpp"
@@ -29,6 +30,7 @@
 #include "io/result/result.hpp"
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
+#include "report/answer_words.hpp"
 #include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
@@ -484,8 +486,22 @@ std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group) 
 
 namespace {
 
-/// The verdict and its reasons in the words that other outputs have.
-void add_words(Json& out, const Answer& answer) {
+/// The answer in the words that other outputs have.
+void add_words(Json& out, const ReportFacts& facts) {
+  const Answer& answer = facts.answer;
+  PathWords path{facts.options.labels, chainage_of(facts.poses)};
+  for (double& chainage : path.chainage) chainage += facts.options.conflicts.chainage_start;
+  const AnswerWords words =
+      answer_words(answer, path, symbol_of(unit_of(facts.result.reader().header())));
+  const std::pair<const char*, const std::string&> clauses[] = {
+      {"finding", words.finding}, {"seen", words.seen},         {"nearest", words.nearest},
+      {"spacing", words.spacing}, {"searched", words.searched}, {"doubt", words.doubt},
+      {"floor", words.floor},     {"ignored", words.ignored}};
+  for (const auto& [name, clause] : clauses) out["words"][name] = sentence_of(clause);
+  for (std::size_t i = 0; i < kSideWords.size(); ++i) {
+    const char* const side = name_of(static_cast<Side>(i));
+    out["side_words"][side] = Json::array({kSideWords[i].on, kSideWords[i].from});
+  }
   const std::vector<std::string> doubts = answer.doubts();
   out["verdict_words"] = verdict_words(answer.verdict(), !answer.warnings.empty());
   out["reason_words"] = Json::array();
@@ -503,7 +519,7 @@ std::string json_of(const ReportFacts& facts) {
   out["verdict"] = name_of(answer.verdict());
   out["reasons"] = names_of(answer.reasons());
   out["doubts"] = answer.doubts();
-  add_words(out, answer);
+  add_words(out, facts);
   add_budget(out, answer);
   if (answer.seen) out["seen"] = json_of(*answer.seen, facts);
   out["colliding_points"] = facts.result.size();

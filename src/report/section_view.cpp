@@ -312,7 +312,7 @@ std::string remedy_of(const SectionIntrusion& in, double cell, const std::string
                : "";
   };
   if (is_across(in.side)) {
-    return fmt::format("clear {} to y = {} between z = {} and {} {}{}", side_words(in.side), to,
+    return fmt::format("clear {} to y = {} between z = {} and {} {}{}", words_of(in.side).on, to,
                        format_brief(in.z_from), format_brief(in.z_to), unit,
                        or_smaller("make", "narrower there"));
   }

@@ -184,9 +184,9 @@ TEST_CASE("a topic of BCF says how much is missing, or that the model is touched
     Bound is;
     const char* words;
   };
-  for (const Row& row : {Row{0, 0.1, Bound::kExact, "; 0.1 m are missing."},
+  for (const Row& row : {Row{0, 0.1, Bound::kExact, "; 0.100 m are missing."},
                          Row{0, 0.1, Bound::kAtLeast, "; it touches the model."},
-                         Row{0.02, 0.08, Bound::kAtLeast, "; at least 0.08 m are missing."}}) {
+                         Row{0.02, 0.08, Bound::kAtLeast, "; at least 0.080 m are missing."}}) {
     Conflicts conflicts;
     conflicts.listed.push_back({.id = 1,
                                 .least_distance = row.least,

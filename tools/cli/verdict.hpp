@@ -3,22 +3,13 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "clearway/answer.hpp"
-#include "clearway/trajectory.hpp"
-#include "clearway/unseen.hpp"
 #include "io/result/result.hpp"
+#include "report/answer_words.hpp"
 
 /// Answers in words and as JSON. The library decides what an answer is; see clearway/answer.hpp.
 namespace clearway::tool {
-
-/// The labels of a path's poses, and how far along it they are. Empty where the path is not at hand
-/// or has no such labels.
-struct PathWords {
-  PoseLabels labels = {};
-  std::vector<double> chainage = {};
-};
 
 /// Says how many points collide: "3 of 2,001 environment points collide".
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points);
@@ -26,15 +17,6 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
 /// A clause such as "; see the 2 warnings above", so that no verdict stands alone where there were
 /// warnings. Empty without warnings.
 std::string caveat_of(std::size_t warnings);
-
-/// The verdict in one sentence, with `caveat` before its end. unit: the symbol of lengths, "m".
-/// names_nearest: whether a conflict is named by its nearest place, which need not be the worst.
-std::string verdict_text(const Answer& answer, const PathWords& path, const std::string& unit,
-                         const std::string& caveat, bool names_nearest = true);
-
-/// Sentences about the places that were not scanned, each with a blank before it: which are behind
-/// a conflict, and which is probably the ground. Empty where there is nothing to say.
-std::string unseen_text(const UnseenGroups& unseen, const Answer& answer, const std::string& unit);
 
 /// A clause with the codes of what the run of a result warned of, as far as the result keeps them,
 /// such as "; its run warned of large-steps"; empty where there are none.

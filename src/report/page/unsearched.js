@@ -39,15 +39,9 @@ function partStretches() {
 
 /** Over which part of the path the verdict was found; empty where that is all of it. */
 function searchedSentence() {
-  const { unsearched, inputs: { trajectory } } = page.facts;
-  if (unsearched.length === 0) return "";
-  const { length, searched_length: whole, partly_searched_length: part } = trajectory;
-  const silent = silentStretches(), several = bodyFacts().length > 1;
-  const more = part > 0 ? `, and some of its bodies on ${station(part)} more` : "";
-  const where = silent.length > 0 ? ` At chainage ${stretchWords(silent)} the vehicle has no pose, ` +
-                                    "so nothing is known there." : "";
-  return `${several ? "The whole vehicle" : "The vehicle"} was searched on ${station(whole)} of the ` +
-      `path's ${station(length)}${more}.${where}`;
+  const silent = silentStretches();
+  return page.facts.words.searched + (silent.length > 0 ? ` At chainage ${stretchWords(silent)} the vehicle has no pose, ` +
+                                                          "so nothing is known there." : "");
 }
 
 /** The patterns of the shaded stretches, for the profile and its legend. */

@@ -29,34 +29,11 @@ function notScannedWords() {
       `${page.facts.inputs.trajectory.length.toFixed(1)} ${unitSymbol}`;
 }
 
-/** On how much of the path nobody knows what is there; empty where that was not asked. */
+/** What beams passed through, and where nobody knows what is there; empty where that was not asked. */
 function scannedSentence() {
-  const seen = seenFacts();
-  if (!seen) return "";
-  const cubes = `cubes of ${shortLength(seen.cube)} that the vehicle sweeps`;
-  if (seen.swept === 0) return "The vehicle sweeps no cube, so nothing is known of seen space.";
-  if (isNotScanned()) {
-    const largest = unseenGroups()[0];
-    const where = page.facts.inputs.trajectory.length > 0 ? ` on ${notScannedWords()} of the path` : "";
-    return `Not scanned${where}: no beam of the scanner passed through ` +
-        `${count(seen.unseen)} of the ${count(seen.swept)} ${cubes}, so anything may stand there. ` +
-        `They lie in ${plural(seen.listed_groups, "place")}` + (seen.listed_groups > 1
-            ? `, of which ${groupName(largest)} is the largest. ` : `, ${groupName(largest)}. `) +
-        smallGroupsSentence();
-  }
-  return seen.unseen > 0
-      ? `A beam of the scanner passed through all but ${count(seen.unseen)} of the ` +
-        `${count(seen.swept)} ${cubes}. ${smallGroupsSentence()}`
-      : `A beam of the scanner passed through each of the ${count(seen.swept)} ${cubes}.`;
-}
-
-function smallGroupsSentence() {
-  const seen = seenFacts(), small = seen.groups - seen.listed_groups;
-  if (small === 0) return "";
-  const cubes = seen.unseen - seen.listed_cubes;
-  return `${isNotScanned() ? "Another" : "They lie in"} ${plural(small, "group")} of fewer than ` +
-      `${count(seen.seen_min)} cubes, ${plural(cubes, "cube")} in all` +
-      (isNotScanned() ? ", are too small to be listed." : ", in which something small can be.");
+  const groups = unseenGroups(), largest = groups.length > 1 ? ", the largest place," : "";
+  return page.facts.words.seen +
+      (isNotScanned() ? ` Anything may stand there: see ${groupName(groups[0])}${largest} below.` : "");
 }
 
 /** Where a group lies, seen from the path: ranges along an axis of its box there. */
@@ -159,7 +136,7 @@ function unseenNote() {
   if (!isNotScanned()) return scannedSentence();
   return "Unseen cubes that touch each other are one place, and the largest place is U1. Lateral is how far left (+) or right (−) of " +
       "the path the middles of its cubes lie when the vehicle first reaches them, height how far above " +
-      `the path, along the vehicle's own axes. ${smallGroupsSentence()}` +
+      "the path, along the vehicle's own axes." +
       (seen.list.length < seen.listed_groups
           ? ` This page lists the ${count(seen.list.length)} largest of ${count(seen.listed_groups)}.` : "");
 }

@@ -150,38 +150,6 @@ function insideText() {
   return ` ${plural(inside, "point")} ${inside === 1 ? "is" : "are"} inside it.`;
 }
 
-/** Of a mesh that was searched as points: how close its surface may come all the same. */
-function spacingSentence({ query: { radius }, inputs: { model: { spacing } } }) {
-  if (spacing === null) return "";
-  const closest = spacing < radius ? `come as close as ${shortLength(radius - spacing)}`
-                                   : "touch something";
-  return ` The vehicle was searched as points of a mesh. No place of its surface is farther than ` +
-         `${shortLength(spacing)} from one of them, so the surface may ${closest}.`;
-}
-
-/** The first sentence about a result with an error budget. */
-function budgetSentence({ verdict, margins, query, reason_words: reasons, ...facts }) {
-  const radius = shortLength(query.radius), all = shortLength(query.radius + margins.clear);
-  const sure = `${shortLength(margins.clear)} of errors`;
-  if (verdict === "clear") {
-    return `Nothing${aboveFloor()} was found closer than ${all} to the vehicle, which is the margin of ${radius} ` +
-           `and ${sure}.`;
-  }
-  const none = facts.colliding_points + facts.near_points === 0;
-  const found = none ? `No point is closer than ${all} to the vehicle, which is the margin of ${radius} ` +
-                       `and ${sure}.`
-      : `${plural(facts.colliding_points, "point")} ` +
-      `${facts.colliding_points === 1 ? "is" : "are"} closer than the margin of ${radius} to the ` +
-      `vehicle, and ${count(facts.near_points)} more closer than ${all}, which adds ${sure}.` +
-      classifiedText(facts);
-  if (verdict === "conflict") {
-    return `${plural(facts.certain_points, "point")} ` +
-           `${facts.certain_points === 1 ? "is" : "are"} certainly too close, even with ` +
-           `${shortLength(margins.conflict)} of errors. ${found}`;
-  }
-  return `Undecided: ${reasons.join("; ")}. ${found}`;
-}
-
 /** The part of a normal distribution that lies beyond so many standard deviations on one side. */
 function tail(sigmas) {
   let sum = 0;
@@ -294,55 +262,14 @@ function budgetTable() {
     row("For conflict", shortLength(margins.conflict), "taken from the margin")));
 }
 
+/** What was found, and where it is worst or nearest. */
 function verdictSentences() {
-  const { facts } = page, radius = shortLength(facts.query.radius), worst = worstConflict();
-  if (facts.budget) {
-    const named = facts.verdict === "conflict" && worst;
-    return [budgetSentence(facts), named ? worstSentence(worst, radius) : leastSentence()];
-  }
-  if (facts.verdict === "clear") {
-    const points = facts.floor !== null ? `point${aboveFloor()}`
-        : facts.ignored === null ? "point of the environment" : "searched point";
-    const vehicle = facts.inputs.model.spacing === null ? "the vehicle" : "the points of the model";
-    return [`Every ${points} keeps at least ${radius} from ${vehicle}, ` +
-            (facts.unsearched.length > 0 ? "at all poses that it has."
-                 : `at all ${plural(facts.inputs.trajectory.poses, "pose")}.`) +
-            spacingSentence(facts), leastSentence()];
-  }
-  if (facts.verdict === "undecided") {
-    return [`No point${aboveFloor()} was found closer than ${radius} to the vehicle, but ` +
-            `${joined(facts.reason_words)}.`, leastSentence()];
-  }
-  const where = facts.conflicts ? placesText(facts.conflicts) : "";
-  const first = `The environment is closer than ${radius} to the vehicle${where}.${insideText()}${classifiedText(facts)}`;
-  return [first, worst ? worstSentence(worst, radius) : leastSentence()];
-}
-
-/** Whether the vehicle touches points that the search ignored. */
-function collidingIgnored({ colliding }) {
-  if (colliding === null) return "The vehicle may touch them.";
-  if (colliding === 0) return "The vehicle touches none of them.";
-  return `${count(colliding)} of them would collide if they were searched.`;
-}
-
-/** What is judged where there is a floor: " at 0.3 m of the vehicle or above"; empty without one. */
-const aboveFloor = () => page.facts.floor === null ? "" : ` at ${page.facts.floor.words} or above`;
-
-/** How many points the floor leaves out; null without one. */
-function floorSentence() {
-  const { floor } = page.facts;
-  if (floor === null) return null;
-  if (floor.colliding === 0) return `No point within the radius lies below ${floor.words}.`;
-  const one = floor.colliding === 1;
-  return `${plural(floor.colliding, "point")} within the radius ${one ? "lies" : "lie"} below ` +
-      `${floor.words}, such as points of the ground, and ${one ? "is" : "are"} not judged.`;
-}
-
-/** How many points the search left out of the environment; null where it left out none. */
-function ignoredSentence() {
-  const { ignored } = page.facts;
-  return ignored === null ? null : `The search ignored ${plural(ignored.points, "point")} of the environment ` +
-      `(${ignored.what}). ${collidingIgnored(ignored)}`;
+  const { facts } = page, worst = worstConflict(), conflict = facts.verdict === "conflict";
+  const open = facts.verdict === "undecided" ? `Undecided: ${facts.reason_words.join("; ")}. ` : "";
+  const places = conflict && facts.conflicts
+      ? ` ${facts.colliding_points === 1 ? "It lies" : "They lie"}${placesText(facts.conflicts)}.` : "";
+  const first = open + facts.words.finding + places + (conflict ? insideText() : "") + classifiedText(facts);
+  return [first, conflict && worst ? worstSentence(worst, shortLength(facts.query.radius)) : leastSentence()];
 }
 
 function crsName(wkt) {
@@ -441,16 +368,13 @@ function legend() {
 function buildVerdict() {
   const { facts } = page, conflict = facts.verdict === "conflict";
   const [first, second] = verdictSentences(), warned = page.facts.warnings.map((w) => asSentence(w.message)), missing = missingParts();
-  const searched = searchedSentence(), scanned = scannedSentence(), below = floorSentence(),
-      ignored = ignoredSentence();
+  const { spacing, doubt, floor, ignored } = facts.words;
+  const lines = [["ignored", ignored], ["below-floor", floor], ["finding", first], ["place", second],
+                 ["ledger-sentence", ledgerSentence() + ledgerWorstSentence()], ["spacing", spacing],
+                 ["scanned", scannedSentence()], ["searched", searchedSentence()], ["not-found", doubt]];
   byId("verdict-body").append(
     answerBanner({ kind: facts.verdict, word: capital(facts.verdict_words), lines: [
-          make("p", {}, first), make("p", {}, second),
-          ledgerFacts() && make("p", { id: "ledger-sentence" }, ledgerSentence(), ledgerWorstSentence()),
-          scanned && make("p", { id: "scanned" }, scanned),
-          searched && make("p", { id: "searched" }, searched),
-          below && make("p", { id: "below-floor" }, below),
-          ignored && make("p", { id: "ignored" }, ignored),
+          ...lines.filter(([, text]) => text).map(([id, text]) => make("p", { id }, text)),
           seeWarnings(conflict ? "See also" : "See", warned)] }),
     make("div", { class: "tiles" }, scannedTiles(), conflict ? conflictTiles() : clearTiles()),
     warningsList(warned),

@@ -55,15 +55,9 @@ const coordinates = (p) => p.map((v) => v.toFixed(2)).join(", ");
 
 const kSides = { left: "left", right: "right", above: "above", below: "below", front: "in front",
                  behind: "behind", around: "around", unknown: "" };
-const sideWords = (side) => ({ left: "on the left", right: "on the right", above: "above it",
-                               below: "below it", front: "in front of it", behind: "behind it",
-                               around: "around it" })[side]
-    ?? "";
-/** Where a vehicle was entered by what is inside it. */
-const innerSideWords = (side) => ({ left: "from its left side", right: "from its right side", above: "from its top",
-                                    below: "from its underside", front: "from its front", behind: "from its rear",
-                                    around: "from both sides" })[side]
-    ?? "";
+/** Where something lies, seen from the vehicle; and from where it came in if it is inside. */
+const sideWords = (side) => page.facts.side_words[side][0];
+const innerSideWords = (side) => page.facts.side_words[side][1];
 /** On which side something lies; of what is inside the vehicle, from which it came in. */
 const sideOfPlace = ({ side, least_distance: distance }) => isInside(distance) ? innerSideWords(side) : sideWords(side);
 
@@ -136,16 +130,9 @@ function nearestPointSentence({ point, ...of }, distance) {
 }
 
 function leastSentence() {
-  const { least_distance: least, query } = page.facts;
-  if (least) {
-    const where = `at chainage ${placeWords(least.chainage)} (pose ${count(least.pose)}` +
-        `${bodyWords(least)}).${nearestPointSentence(least, least.distance)}`;
-    return isInside(least.distance)
-        ? `The greatest depth inside the vehicle is ${metres(-least.distance)}, ${where}`
-        : `The least distance is ${metres(least.distance)}, ${where}`;
-  }
-  const looked = Math.max(query.clearance, query.profile);
-  if (looked > 0) return `Nothing${scannedOnly()}${aboveFloor()} is closer than ${shortLength(looked)}.`;
+  const { least_distance: least, query, words } = page.facts;
+  const where = least ? [isInside(least.distance) ? "" : sideWords(least.side), offsetWords(least)].filter(Boolean).join(", ") : "";
+  if (words.nearest) return words.nearest + (where ? ` That point is ${where}.` : "");
   return query.between_poses
       ? "How close it comes is not known: a run between poses has no distances."
       : "How close it comes is not known: run again with --profile or --clearance.";

@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "cli/support/label_text.hpp"
 #include "cli/support/program_json.hpp"
 #include "core/describe/labels.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
+#include "report/label_text.hpp"
 
 namespace clearway::tool {
 namespace {

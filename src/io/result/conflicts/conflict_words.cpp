@@ -113,50 +113,6 @@ std::string missing_words(const Conflict& conflict, const std::string& unit, dou
          (unit.empty() ? "" : " " + unit);
 }
 
-const char* inner_side_words(Side side) {
-  switch (side) {
-    case Side::kUnknown:
-      return "";
-    case Side::kLeft:
-      return "from its left side";
-    case Side::kRight:
-      return "from its right side";
-    case Side::kAbove:
-      return "from its top";
-    case Side::kBelow:
-      return "from its underside";
-    case Side::kFront:
-      return "from its front";
-    case Side::kBehind:
-      return "from its rear";
-    case Side::kAround:
-      return "from both sides";
-  }
-  return "";
-}
-
-const char* side_words(Side side) {
-  switch (side) {
-    case Side::kUnknown:
-      return "";
-    case Side::kLeft:
-      return "on the left";
-    case Side::kRight:
-      return "on the right";
-    case Side::kAbove:
-      return "above it";
-    case Side::kBelow:
-      return "below it";
-    case Side::kFront:
-      return "in front of it";
-    case Side::kBehind:
-      return "behind it";
-    case Side::kAround:
-      return "around it";
-  }
-  return "";
-}
-
 std::string class_words(const Conflict& conflict) {
   if (!conflict.main_class) return "";
   return classified_words(
@@ -186,7 +142,7 @@ std::string conflict_words(const Conflict& conflict, const RemedyWords& how) {
   std::string text = "conflict " + std::to_string(conflict.id) + ", " + fixed_digits(at, 2) + " " +
                      how.unit + " along the path";
   const bool is_inside = conflict.least_distance && *conflict.least_distance < 0;
-  const std::string side = is_inside ? inner_side_words(conflict.side) : side_words(conflict.side);
+  const std::string side = is_inside ? words_of(conflict.side).from : words_of(conflict.side).on;
   if (!is_inside && !side.empty()) text += ", " + side;
   const std::string missing = missing_words(conflict, how.unit, how.metre);
   if (is_inside) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
@@ -24,9 +25,22 @@ const Conflict* worst_of(const Conflicts& conflicts);
 /// near. unit: the symbol of lengths; an empty one is left out. metre: metres per unit.
 std::string missing_words(const Conflict& conflict, const std::string& unit, double metre);
 
-/// Where something lies, seen from the vehicle: "on the left", "above it"; empty where that is not
-/// known.
-const char* side_words(Side side);
+/// Where something lies, seen from the vehicle, and from where it came in if it is inside. Empty
+/// where that is not known.
+struct SideWords {
+  const char *on, *from;
+};
+inline constexpr std::array kSideWords{SideWords{"", ""},
+                                       SideWords{"on the left", "from its left side"},
+                                       SideWords{"on the right", "from its right side"},
+                                       SideWords{"above it", "from its top"},
+                                       SideWords{"below it", "from its underside"},
+                                       SideWords{"in front of it", "from its front"},
+                                       SideWords{"behind it", "from its rear"},
+                                       SideWords{"around it", "from both sides"}};
+constexpr const SideWords& words_of(Side side) {
+  return kSideWords[static_cast<std::size_t>(side)];
+}
 
 /// How conflicts are put in words.
 struct RemedyWords {

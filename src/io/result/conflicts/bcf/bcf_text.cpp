@@ -100,16 +100,12 @@ std::string small_text(const ConflictFile& file) {
          counted(found.small_points, "point") + " together.";
 }
 
-/// What is missing: "; 0.1 m are missing", "; at least 0.1 m are missing" or "; it touches the
+/// What is missing: "; 0.100 m are missing", "; at least 0.100 m are missing" or "; it touches the
 /// model". Empty where the points are only near.
 std::string missing_text(const ConflictFile& file, const Conflict& c) {
-  if (!(*c.encroachment > 0)) return "";
-  const bool exact = c.encroachment_is == Bound::kExact;
-  if (!exact && *c.least_distance * file.metres_per_unit() < kTouching) {
-    return "; it touches the model";
-  }
-  return std::string(exact ? "; " : "; at least ") +
-         length_text(file, format_brief(*c.encroachment)) + " are missing";
+  const std::string words = missing_words(c, symbol_of(file.unit()), file.metres_per_unit());
+  if (words.empty()) return "";
+  return words == "touches" ? "; it touches the model" : "; " + words + " are missing";
 }
 
 /// What frees the vehicle from the conflict, in sentences; empty where nothing is known.

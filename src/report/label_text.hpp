@@ -6,8 +6,8 @@
 
 #include "core/describe/labels.hpp"
 
-/// Labels of poses in the words of the terminal.
-namespace clearway::tool {
+/// Labels of poses in words.
+namespace clearway {
 
 /// A label of a pose with its title and unit, such as "station 12.50 m".
 inline std::string label_text(const PoseLabel<double>& label, double number) {
@@ -21,4 +21,4 @@ inline std::string label_text(const PoseLabel<std::string>& label, const std::st
   return *label.title == '\0' ? text : fmt::format("{} {}", label.title, text);
 }
 
-}  // namespace clearway::tool
+}  // namespace clearway
