@@ -113,11 +113,13 @@ void add_methods(Class& made, const Of& of, const std::tuple<Facts...>& facts) {
   });
 }
 
-/// Adds a class, whose objects only the module makes, with a property for each entry of the lists.
+/// Adds a class, whose objects only the module makes, with a property for each of its facts and
+/// each entry of further lists.
 template <typename Object, typename... Bases, typename... Lists>
 py::class_<Object, Bases...> add_class(py::module_& module, const char* name, const char* doc,
                                        const Lists&... lists) {
   py::class_<Object, Bases...> made(module, name, doc);
+  add_properties(made, kFactsOf<Object>);
   (add_properties(made, lists), ...);
   return made;
 }

@@ -188,8 +188,7 @@ void add_unsearched(py::module_& module) {
   auto stretch = add_class<UnsearchedStretch>(
       module, "UnsearchedStretch",
       "A stretch of the path on which bodies of a vehicle have no pose, so that nothing is\n"
-      "known of them there.",
-      kUnsearchedFacts);
+      "known of them there.");
   add_repr(stretch, [](const UnsearchedStretch& s) {
     return "<UnsearchedStretch: chainage " + format_number(s.chainage_from) + " to " +
            format_number(s.chainage_to) + ", " + counted(s.bodies.size(), "body", "bodies") +

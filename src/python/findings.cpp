@@ -81,10 +81,9 @@ void add_ledger(py::module_& module) {
     return "<conflict " + std::to_string(e.conflict) + ": " + name_of(e.status) + ">";
   });
   add_class<OutsideOfAccepted>(module, "OutsideOfAccepted",
-                               "What is left of an answer without the accepted conflicts.",
-                               kOutsideFacts);
-  auto ledger = add_class<Ledger>(
-      module, "Ledger", "A ledger of conflicts after it was compared with a result.", kLedgerFacts);
+                               "What is left of an answer without the accepted conflicts.");
+  auto ledger = add_class<Ledger>(module, "Ledger",
+                                  "A ledger of conflicts after it was compared with a result.");
   ledger
       .def("counts", &counts_of, R"(counts(self)
 --
@@ -165,7 +164,7 @@ void add_conflicts(py::module_& module) {
                         kSmallGroupColumns);
   auto found = add_class<GroupedConflicts>(
       module, "Conflicts",
-      "The conflicts of a result: its colliding points, grouped place by place.", kConflictsFacts,
+      "The conflicts of a result: its colliding points, grouped place by place.",
       kLedgerOfConflicts);
   found
       .def_property_readonly(
@@ -205,16 +204,15 @@ GroupedConflicts find_conflicts(const py::kwargs& given) {
 
 void add_station_table(py::module_& module) {
   add_class<Overthrow>(module, "Overthrow",
-                       "How far the centre line of a body leaves the path in a curve.",
-                       kOverthrowFacts);
+                       "How far the centre line of a body leaves the path in a curve.");
   auto row = add_class<StationRow>(
       module, "StationRow", "A stretch of the path. What has no value is None.", kStationColumns);
   add_repr(row, [](const StationRow& stretch) {
     return py::str("<StationRow {:.2f} to {:.2f} m: {}>")
         .format(stretch.chainage_from, stretch.chainage_to, name_of(stretch.verdict));
   });
-  auto table = add_class<StationTable>(
-      module, "StationTable", "The path of a result, stretch by stretch.", kStationTableFacts);
+  auto table =
+      add_class<StationTable>(module, "StationTable", "The path of a result, stretch by stretch.");
   table.def("__len__", [](const StationTable& t) { return t.rows.size(); });
   add_repr(table, [](const StationTable& t) {
     return "<a table of " + std::to_string(t.rows.size()) + " stretches>";
@@ -250,8 +248,8 @@ void add_shift_table(py::module_& module) {
       "The least shift that frees a stretch of the path. What has no value is None.",
       kShiftColumns);
   add_repr(stretch, [](const StretchShift& row) { return "<" + words_of(row) + ">"; });
-  auto table = add_class<ShiftTable>(
-      module, "ShiftTable", "The shifts of a path and of its conflicts.", kShiftTableFacts);
+  auto table =
+      add_class<ShiftTable>(module, "ShiftTable", "The shifts of a path and of its conflicts.");
   table.def("__len__", [](const ShiftTable& t) { return t.conflicts.size(); });
   add_repr(table, [](const ShiftTable& t) {
     return "<" + words_of(t.path) + "; " + std::to_string(t.conflicts.size()) + " conflicts>";
@@ -295,8 +293,8 @@ ShiftTable find_shifts(const py::kwargs& given) {
 }
 
 void add_page(py::module_& module) {
-  auto summary = add_class<ReportSummary>(module, "ReportSummary",
-                                          "What the page of write_report() says.", kPageFacts);
+  auto summary =
+      add_class<ReportSummary>(module, "ReportSummary", "What the page of write_report() says.");
   summary.def_property_readonly(
       "conflicts", [](const ReportSummary& s) { return py::cast(GroupedConflicts{{s.conflicts}}); },
       "The conflicts on the page: a Conflicts, whose conflict_of is empty.");

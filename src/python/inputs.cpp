@@ -129,8 +129,7 @@ void add_smooth_path(py::module_& module) {
   auto path = add_class<SmoothPath>(
       module, "SmoothPath",
       "A path on a smooth curve, and how far it is from the given one. Distances are upper bounds, "
-      "between poses as well.",
-      kSmoothPathFacts);
+      "between poses as well.");
   path.def_property_readonly(
       "place", member_array<&SmoothPath::place, SmoothPath>,
       "For each of them the place of the given path, as the index of a pose and a part of the way "
@@ -164,13 +163,12 @@ py::dict busy_seconds(const ConvertReport& report) {
 }
 
 void add_convert_report(py::module_& module) {
-  add_class<OriginsPathReport>(module, "OriginsPathReport",
-                               "How the points of a moving scanner found their places on its path.",
-                               kOriginsPathFacts);
+  add_class<OriginsPathReport>(
+      module, "OriginsPathReport",
+      "How the points of a moving scanner found their places on its path.");
   auto report = add_class<ConvertReport>(
       module, "ConvertReport",
-      "What a conversion did: how many points it stored, how exactly, and in what time.",
-      kConvertFacts);
+      "What a conversion did: how many points it stored, how exactly, and in what time.");
   report.def_property_readonly(
       "busy_seconds", &busy_seconds,
       "For how many seconds all threads together were busy with each stage: a dict by its name.");

@@ -52,21 +52,19 @@ py::object margins_of(const Answer& answer) {
 
 void add_answer(py::module_& module) {
   add_class<SearchedLength>(module, "SearchedLength",
-                            "How much of a path was searched, in metres along its positions.",
-                            kSearchedLengthFacts);
+                            "How much of a path was searched, in metres along its positions.");
   add_class<SeenSummary>(module, "SeenSummary",
                          "What is known of the space that the model sweeps, in cubes.",
                          kSeenColumns);
   add_class<IgnoredPointCounts>(
       module, "IgnoredPointCounts",
-      "How many points of the environment a query leaves out of the search.", kIgnoredPointFacts);
+      "How many points of the environment a query leaves out of the search.");
   add_class<QueryParameters>(module, "QueryParameters",
                              "The parameters of a query: all of it but the model and the poses.",
                              kQueryFields);
   auto answer = add_class<Answer>(
       module, "Answer",
-      "The answer to a query in short: the verdict, and the places that matter most.",
-      kAnswerFacts);
+      "The answer to a query in short: the verdict, and the places that matter most.");
   answer
       .def_property_readonly(
           "margins", &margins_of,
@@ -85,18 +83,15 @@ void add_answer(py::module_& module) {
 void add_search_report(py::module_& module) {
   add_class<SearchSeconds>(module, "SearchSeconds",
                            "How many seconds the parts of a search took. Parts that run at the "
-                           "same time overlap, so that their sum may exceed the total.",
-                           kSearchSecondsFacts);
+                           "same time overlap, so that their sum may exceed the total.");
   add_class<DeviceEstimate>(
       module, "DeviceEstimate",
-      "How many seconds the search would take on each device, as estimated before it.",
-      kDeviceEstimateFacts);
+      "How many seconds the search would take on each device, as estimated before it.");
   add_class<BytesRead>(module, "BytesRead",
                        "How many bytes of a store's points were read, by column. What is read "
-                       "again counts again.",
-                       kBytesReadFacts);
-  auto report = add_class<SearchReport, Answer>(
-      module, "SearchReport", "What a search found, and how it searched.", kSearchFacts);
+                       "again counts again.");
+  auto report = add_class<SearchReport, Answer>(module, "SearchReport",
+                                                "What a search found, and how it searched.");
   add_repr(report, [](const SearchReport& r) {
     return "<" + (r.shard ? in_words(*r.shard) + ": " : "") + std::to_string(r.colliding_points) +
            " of " + std::to_string(r.environment_points) + " points collide" +
@@ -108,8 +103,8 @@ void add_merge_report(py::module_& module) {
   add_class<PartWarning, Message>(
       module, "PartWarning", "A warning of the searches that wrote the parts.",
       std::tuple{fact<&PartWarning::parts>("How many of the parts have this warning.")});
-  auto report = add_class<MergeReport, Answer>(
-      module, "MergeReport", "What merge() found in the merged result.", kMergeFacts);
+  auto report = add_class<MergeReport, Answer>(module, "MergeReport",
+                                               "What merge() found in the merged result.");
   add_repr(report, [](const MergeReport& r) {
     return "<" + std::to_string(r.colliding_points) + " of " +
            std::to_string(r.environment_points) + " points collide, of " + std::to_string(r.parts) +

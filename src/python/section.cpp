@@ -45,7 +45,7 @@ void add_section_report(py::module_& module) {
       module, "SectionParameters",
       "The question of find_section(), with the defaults filled in. Lengths are in metres, or in "
       "the unit of the scans where that is another one.",
-      kSectionRangeFacts, kSectionFields);
+      kSectionFields);
   parameters.def_property_readonly(
       "window",
       [](const SectionParameters& asked) {
@@ -58,18 +58,16 @@ void add_section_report(py::module_& module) {
         .format(asked.rear, asked.front, asked.cell, asked.bin, asked.margin);
   });
   add_class<SectionSeenCounts>(module, "SectionSeenCounts",
-                               "How many cells of a section no beam of the scanner crossed.",
-                               kSectionSeenFacts);
+                               "How many cells of a section no beam of the scanner crossed.");
   auto ignored = add_class<SectionIgnoredCells>(
       module, "SectionIgnoredCells",
       "Cells of a section that ignored points would block somewhere on the path, and that no other "
-      "point blocks.",
-      kSectionIgnoredFacts);
+      "point blocks.");
   add_repr(ignored, [](const SectionIgnoredCells& i) {
     return py::str("<{} cells, {} of them high>").format(i.blocked, i.high);
   });
-  auto report = add_class<SectionReport>(
-      module, "SectionReport", "How find_section() found a section.", kSectionReportFacts);
+  auto report =
+      add_class<SectionReport>(module, "SectionReport", "How find_section() found a section.");
   add_repr(report, [](const SectionReport& r) {
     return "<" + std::to_string(r.blocked) + " cells are blocked, in " + std::to_string(r.bins) +
            (r.bins == 1 ? " stretch" : " stretches") + warning_words(r.warnings) + ">";
@@ -77,14 +75,14 @@ void add_section_report(py::module_& module) {
 }
 
 void add_section_checks(py::module_& module) {
-  auto stop = add_class<SectionStop>(
-      module, "SectionStop", "A place that stops a load, or that is not known.", kSectionStopFacts);
+  auto stop = add_class<SectionStop>(module, "SectionStop",
+                                     "A place that stops a load, or that is not known.");
   add_repr(stop, [](const SectionStop& s) {
     return py::str("<pose {} at {} m, cell ({}, {})>")
         .format(s.first_pose, s.chainage, s.cell[0], s.cell[1]);
   });
-  auto check = add_class<SectionCheck>(
-      module, "SectionCheck", "Whether a load with an outline passes.", kSectionCheckFacts);
+  auto check =
+      add_class<SectionCheck>(module, "SectionCheck", "Whether a load with an outline passes.");
   check.def_property_readonly(
       "reason",
       [](const SectionCheck& c) {
@@ -97,8 +95,8 @@ void add_section_checks(py::module_& module) {
     if (c.stop) words += " at pose " + std::to_string(c.stop->first_pose);
     return words + ">";
   });
-  auto row = add_class<OutlineRowCheck>(
-      module, "OutlineRowCheck", "The answer to one row of a table of outlines.", kOutlineRowFacts);
+  auto row = add_class<OutlineRowCheck>(module, "OutlineRowCheck",
+                                        "The answer to one row of a table of outlines.");
   row.def_property_readonly(
       "outline", [](const OutlineRowCheck& r) { return text(r.file.string()); },
       "The file of the outline, as the table names it.");
@@ -106,15 +104,14 @@ void add_section_checks(py::module_& module) {
     return "<line " + std::to_string(r.line) + ": " + name_of(r.check.verdict) + ">";
   });
   auto gap = add_class<OutlineGap>(module, "OutlineGap",
-                                   "A part of the path for which a table of outlines has none.",
-                                   kOutlineGapFacts);
+                                   "A part of the path for which a table of outlines has none.");
   add_repr(gap, [](const OutlineGap& g) {
     return "<no outline from " + format_brief(g.chainage_from) + " to " +
            format_brief(g.chainage_to) + ">";
   });
   add_class<OutlineTableCheck, SectionCheck>(
       module, "OutlineTableCheck",
-      "The answer to a table of outlines. Its places are those of all rows.", kOutlineTableFacts);
+      "The answer to a table of outlines. Its places are those of all rows.");
 }
 
 void add_section_cells(py::module_& module) {
@@ -139,8 +136,7 @@ void add_section_cells(py::module_& module) {
       .def("__len__", &SectionCells::size);
   auto grid = add_class<SectionGrid>(
       module, "SectionGrid",
-      "The whole cells of a window: columns j_from to j_to - 1 and rows k_from to k_to - 1.",
-      kSectionGridFacts);
+      "The whole cells of a window: columns j_from to j_to - 1 and rows k_from to k_to - 1.");
   add_repr(grid, [](const SectionGrid& g) {
     return py::str("<columns {} to {}, rows {} to {}>")
         .format(g.j_from, g.j_to - 1, g.k_from, g.k_to - 1);

@@ -87,7 +87,7 @@ hi: the greatest coordinates: 3 numbers, metres.)")
   });
   auto place = add_class<FoundPlace>(
       module, "FoundPlace",
-      "A point of the environment that was found, and the pose at which it was.", kFoundPlaceFacts);
+      "A point of the environment that was found, and the pose at which it was.");
   add_repr(place, [](const FoundPlace& p) {
     return py::str("<point {} at pose {}, {} m>").format(p.source, p.pose, p.distance);
   });

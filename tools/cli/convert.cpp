@@ -17,10 +17,10 @@
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/describe/convert.hpp"
-#include "core/geometry/quantisation.hpp"
+#include "core/describe/reports.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
-#include "io/files/json.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/store/store_reader.hpp"
 
 namespace clearway::tool {
@@ -38,11 +38,6 @@ std::optional<double> regular_size_of(const std::string& layout) {
   }
 }
 
-nlohmann::ordered_json box_json(const StoreReader& store) {
-  if (store.tree().empty()) return nullptr;
-  return Json(position_box(store.quantisation(), store.tree()[0].box));
-}
-
 /// The bytes that this process read and wrote by system calls, page cache included, as the system
 /// counts them; null where it does not.
 nlohmann::ordered_json bytes_moved() {
@@ -57,63 +52,29 @@ nlohmann::ordered_json bytes_moved() {
   return out;
 }
 
-nlohmann::ordered_json json_of(const OriginsPathReport& path) {
-  return {{"point_clock", path.point_clock},
-          {"path_clock", path.path_clock},
-          {"first_point", path.first_point},
-          {"last_point", path.last_point},
-          {"first_pose", path.first_pose},
-          {"last_pose", path.last_pose},
-          {"shifts", path.shifts},
-          {"before", path.before},
-          {"after", path.after},
-          {"in_gaps", path.in_gaps},
-          {"without_time", path.without_time}};
-}
-
 constexpr const char* kGoesOnFromThere =
     "the same command with --resume, without --force, goes on from there";
 
-/// The report as JSON. What only a conversion knows is null for a store that already existed.
+/// The report as JSON, with more about the store. What only a conversion knows is null for a store
+/// that already existed.
 nlohmann::ordered_json json_of(const ConvertReport& report, const ConvertCommand& options,
                                double total_seconds) {
   const StoreReader store(options.output);
   const StoreMetadata& metadata = store.metadata();
   nlohmann::ordered_json out = program_json({{"output", options.output}});
   for (const auto& input : options.inputs) out["files"]["inputs"].push_back(input.string());
-  out["was_finished"] = report.was_finished;
-  out["points"] = metadata.point_count;
-  out["cells"] = store.cells().size();
-  out["non_finite"] = metadata.points_without_place();
-  out["absent"] = nullptr;
-  const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
-  out["withheld"] = withheld.left_out();
-  out["withheld_kept"] = withheld.points - withheld.left_out();
-  out["near"] = metadata.near ? corridor_json(*metadata.near) : nullptr;
-  out["scale"] = metadata.quantisation.scale;
-  out["steps"] = metadata.steps;
-  out["offset"] = metadata.quantisation.offset;
-  out["box"] = box_json(store);
-  out["sources"] = sources_json(metadata);
-  if (metadata.origins) out["origins"] = origins_json(*metadata.origins);
-  if (report.origins_path) out["origins_path"] = json_of(*report.origins_path);
-  out["largest_change"] = nullptr;
-  out["temporary_bytes"] = nullptr;
-  out["output_bytes"] = std::filesystem::file_size(options.output);
-  out["resumed_from"] = nullptr;
-  if (!report.was_finished) {
-    if (!report.resumed_from.empty()) out["resumed_from"] = report.resumed_from;
-    out["non_finite"] = report.non_finite_points;
-    out["absent"] = report.absent_points;
-    out["largest_change"] = report.largest_change;
-    out["temporary_bytes"] = report.temporary_bytes;
+  add_facts(out, report);
+  if (report.was_finished) {
+    for (const char* key : {"absent_points", "largest_change", "temporary_bytes", "count_seconds",
+                            "distribute_seconds", "partition_seconds", "confirm_seconds"}) {
+      out[key] = nullptr;
+    }
   }
-  out["warnings"] = report.warnings;
-  out["seconds"] = {{"total", total_seconds},
-                    {"count", report.count_seconds},
-                    {"distribute", report.distribute_seconds},
-                    {"partition", report.partition_seconds},
-                    {"confirm", report.confirm_seconds}};
+  out["total_seconds"] = total_seconds;
+  out["near"] = metadata.near ? corridor_json(*metadata.near) : nullptr;
+  out["steps"] = metadata.steps;
+  out["sources"] = sources_json(metadata);
+  out["origins"] = metadata.origins ? origins_json(*metadata.origins) : nullptr;
   out["busy_seconds"] = nullptr;
   for (const StageSeconds& busy : report.busy_seconds) {
     out["busy_seconds"][busy.stage] = busy.seconds;

@@ -15,10 +15,11 @@
 #include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
+#include "core/describe/answer.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/file.hpp"
-#include "io/files/json.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -31,24 +32,17 @@ struct MergeCommand {
   bool json = false;
 };
 
-/// The warnings of the runs, each with the number of parts that have it.
-nlohmann::ordered_json warnings_of(const MergeReport& report) {
-  nlohmann::ordered_json out =
-      std::vector<Message>(report.part_warnings.begin(), report.part_warnings.end());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i]["parts"] = report.part_warnings[i].parts;
-  return out;
-}
-
 nlohmann::ordered_json json_of(const MergeCommand& options, const MergeReport& report,
                                double seconds) {
   nlohmann::ordered_json out = program_json({{"output", options.output}});
   out["radius"] = report.parameters.radius;
-  out["parts"] = report.parts;
-  out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
   out["model_points"] = report.model_points;
   add_answer(report, {}, out);
-  out["warnings"] = warnings_of(report);
+  add_facts(out, report);
+  for (std::size_t i = 0; i < report.part_warnings.size(); ++i) {
+    out["warnings"][i]["parts"] = report.part_warnings[i].parts;
+  }
   out["seconds"] = seconds;
   return out;
 }

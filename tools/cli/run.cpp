@@ -34,14 +34,15 @@
 #include "cli/support/program_json.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
 #include "cli/verdict.hpp"
+#include "core/describe/answer.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/stopwatch.hpp"
 #include "findings/touched_first.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/file.hpp"
-#include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/result_header.hpp"
@@ -152,37 +153,6 @@ struct ProgramReport {
   std::uint64_t peak_host_bytes = 0;
 };
 
-nlohmann::ordered_json seconds_of(const SearchSeconds& search, const ProgramReport& program) {
-  return {{"total", program.total_seconds},
-          {"inputs", program.inputs_seconds},
-          {"context", search.context},
-          {"context_wait", search.context_wait},
-          {"plan", search.plan},
-          {"field", search.field},
-          {"engine", search.engine},
-          {"search", search.search},
-          {"read", search.read},
-          {"upload", search.upload},
-          {"compute", search.compute},
-          {"collect", search.collect},
-          {"swept", search.swept},
-          {"beams", search.beams},
-          {"depth", search.depth},
-          {"write", search.write},
-          {"end_wait", search.end_wait}};
-}
-
-/// The value if it is known of this run; otherwise null.
-template <typename Value>
-nlohmann::ordered_json known(bool is_known, const Value& value) {
-  return is_known ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json device_estimate_of(const SearchReport& report) {
-  if (!report.estimate) return nullptr;
-  return {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
-}
-
 /// On which side of the vehicle the least distance of the profile is, or without one that of the
 /// clearances. Unknown of a vehicle where only the profile has it, which does not know the body.
 Side least_side(const SearchReport& report, const Query& query) {
@@ -207,7 +177,6 @@ Side least_side(const SearchReport& report, const Query& query) {
 nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& options,
                                const Query& query, const PathWords& path,
                                const ProgramReport& program) {
-  const bool searched = !report.was_finished;
   const bool vehicle = !options.vehicle.empty();
   nlohmann::ordered_json out =
       program_json({{"env", options.environment},
@@ -215,35 +184,24 @@ nlohmann::ordered_json json_of(const SearchReport& report, const RunOptions& opt
                     {"trajectory", options.trajectory},
                     {"output", options.output}});
   out["radius"] = options.query.radius;
-  out["was_finished"] = report.was_finished;
   out["environment_points"] = report.environment_points;
   out["model_as"] = model_as(report.model_solids, report.model_triangles);
   out["model_points"] = report.model_points;
-  out["model_triangles"] = report.model_triangles;
   out["model_solids"] = report.model_solids;
   add_answer(report, path, out);
   const Side side = least_side(report, query);
   out["least_side"] = nullptr;
   if (side != Side::kUnknown) out["least_side"] = name_of(side);
-  out["shard_share"] = or_null(report.shard_share);
-  out["engine"] = known(searched, name_of(report.engine));
-  out["device"] = known(searched, name_of(report.device));
-  out["device_estimate"] = device_estimate_of(report);
-  out["searches"] = known(searched, report.searches);
-  out["cells_total"] = report.cells_total;
-  out["cells_read"] = report.cells_read;
-  out["bytes_read"] = {{"coordinates", report.bytes_read.coordinates},
-                       {"sources", report.bytes_read.sources},
-                       {"classes", report.bytes_read.classes},
-                       {"origins", report.bytes_read.origins}};
-  out["resumed_cells"] = known(searched, report.resumed_cells);
-  out["pages"] = known(searched, report.pages);
-  out["page_bytes"] = known(searched, report.page_bytes);
-  out["slots"] = known(searched, report.slots);
-  out["needed_host_bytes"] = known(searched, report.needed_host_bytes);
+  add_facts(out, report, kFactsOf<SearchReport>);
+  if (report.was_finished) {
+    for (const char* key : {"engine", "device", "device_name", "searches", "resumed_cells", "pages",
+                            "page_bytes", "slots", "needed_host_bytes"}) {
+      out[key] = nullptr;
+    }
+  }
   out["peak_host_bytes"] = program.peak_host_bytes + report.pinned_bytes;
-  out["peak_device_bytes"] = report.peak_device_bytes;
-  out["seconds"] = seconds_of(report.seconds, program);
+  out["seconds"]["total"] = program.total_seconds;
+  out["seconds"]["inputs"] = program.inputs_seconds;
   out["warnings"] = report.warnings;
   return out;
 }

@@ -26,8 +26,9 @@
 #include "cli/support/program_json.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "core/describe/section.hpp"
+#include "core/describe/section_report.hpp"
 #include "core/util/format.hpp"
-#include "io/files/json.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 
@@ -51,33 +52,7 @@ ordered_json json_of(const SectionReport& report, const FindCommand& options) {
   ordered_json out = program_json({{"env", options.environment},
                                    {"trajectory", options.trajectory},
                                    {"output", options.output}});
-  out["blocked"] = report.blocked;
-  out["blocked_in_bins"] = report.blocked_in_bins;
-  out["bins"] = report.bins;
-  out["rounding"] = report.rounding;
-  out["motion"] = or_null(report.motion);
-  out["device"] = name_of(report.device);
-  out["device_estimate"] = nullptr;
-  if (report.estimate) {
-    out["device_estimate"] = {{"cpu", report.estimate->cpu}, {"cuda", report.estimate->cuda}};
-  }
-  if (report.seen) {
-    out["seen"] = {{"cube", report.seen->cube},
-                   {"unknown", report.seen->unknown},
-                   {"unknown_in_bins", report.seen->unknown_in_bins}};
-  }
-  if (report.ignored_cells) {
-    out["ignored_points"] = report.ignored_points;
-    out["ignored_cells"] = {{"blocked", report.ignored_cells->blocked},
-                            {"high", report.ignored_cells->high}};
-  }
-  out["needed_host_bytes"] = report.needed_host_bytes;
-  out["peak_device_bytes"] = report.peak_device_bytes;
-  out["seconds"] = {{"total", report.seconds},
-                    {"search", report.search_seconds},
-                    {"engine", report.engine_seconds},
-                    {"context_wait", report.context_wait_seconds}};
-  out["warnings"] = report.warnings;
+  add_facts(out, report);
   return out;
 }
 

@@ -17,7 +17,8 @@
 #include "cli/support/options.hpp"
 #include "cli/support/program.hpp"
 #include "cli/support/program_json.hpp"
-#include "io/files/json.hpp"
+#include "core/describe/section_report.hpp"
+#include "io/files/facts_json.hpp"
 #include "report/section_words.hpp"
 
 namespace clearway::tool {
@@ -40,27 +41,15 @@ ordered_json witness_json(const std::optional<SectionWitness>& witness) {
   return {{"source", witness->source}, {"xyz", witness->xyz}, {"class", witness->point_class}};
 }
 
-ordered_json stop_json(const SectionStop& stop) {
-  return {{"bin", stop.bin},
-          {"first_pose", stop.first_pose},
-          {"chainage", stop.chainage},
-          {"cell", stop.cell}};
-}
-
 /// The places of a check, as members of JSON. witnesses: of each stop, or empty where nobody asked
 /// for them.
 void add_places(ordered_json& out, const SectionCheck& check, const Witnesses& witnesses,
                 const Section& section) {
-  auto stops = ordered_json::array();
-  for (std::size_t i = 0; i < check.stops.size(); ++i) {
-    stops.push_back(stop_json(check.stops[i]));
-    if (!witnesses.empty()) stops.back()["witness"] = witness_json(witnesses[i]);
+  out["stops"] = json_of_fact(check.stops);
+  for (std::size_t i = 0; i < witnesses.size(); ++i) {
+    out["stops"][i]["witness"] = witness_json(witnesses[i]);
   }
-  out["stops"] = std::move(stops);
-  if (!section.data().unknown) return;
-  auto unknowns = ordered_json::array();
-  for (const SectionStop& place : check.unknowns) unknowns.push_back(stop_json(place));
-  out["unknowns"] = std::move(unknowns);
+  if (section.data().unknown) out["unknowns"] = json_of_fact(check.unknowns);
 }
 
 void add_verdict(ordered_json& out, const SectionCheck& check) {
@@ -94,10 +83,6 @@ ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& 
   return out;
 }
 
-ordered_json bins_json(const std::optional<SectionBinRange>& bins) {
-  return bins ? ordered_json{bins->first, bins->last} : ordered_json(nullptr);
-}
-
 ordered_json json_of(const OutlineRowCheck& check, const OutlineRow& row, bool by_station,
                      const Section& section) {
   ordered_json out{{"line", check.line},
@@ -109,7 +94,7 @@ ordered_json json_of(const OutlineRowCheck& check, const OutlineRow& row, bool b
   }
   out["outline"] = check.file.string();
   out["margin"] = check.margin;
-  out["bins"] = bins_json(check.bins);
+  out["bins"] = json_of_fact(check.bins);
   add_verdict(out, check.check);
   if (!check.bins) out["verdict"] = nullptr;
   add_places(out, check.check, {}, section);
@@ -127,13 +112,7 @@ ordered_json json_of(const OutlineTableCheck& check, const OutlineTable& table,
     rows.push_back(json_of(check.rows[i], table.rows[i], table.by_station, section));
   }
   out["rows"] = std::move(rows);
-  auto gaps = ordered_json::array();
-  for (const OutlineGap& gap : check.gaps) {
-    gaps.push_back({{"chainage_from", gap.chainage_from},
-                    {"chainage_to", gap.chainage_to},
-                    {"bins", bins_json(gap.bins)}});
-  }
-  out["gaps"] = std::move(gaps);
+  out["gaps"] = json_of_fact(check.gaps);
   add_places(out, check, witnesses, section);
   for (std::size_t i = 0; i < check.stops.size(); ++i) out["stops"][i]["row"] = check.stops[i].row;
   add_warnings(out, section, options.load);

@@ -9,7 +9,8 @@
 namespace clearway {
 
 /// A point that was found.
-inline constexpr std::tuple kFoundPlaceFacts{
+template <>
+inline constexpr std::tuple kFactsOf<FoundPlace>{
     fact<&FoundPlace::source>("The index of the point in the order of the scans."),
     fact<&FoundPlace::pose>("The index of the pose, from 0."),
     fact<&FoundPlace::xyz>("The coordinates of the point: 3 float64, metres."),
@@ -19,7 +20,8 @@ inline constexpr std::tuple kFoundPlaceFacts{
         "The class of the point, as the scans have it. None unless they have classes.")};
 
 /// What a query left out.
-inline constexpr std::tuple kIgnoredPointFacts{
+template <>
+inline constexpr std::tuple kFactsOf<IgnoredPointCounts>{
     fact<&IgnoredPointCounts::points>("How many points are left out in all; a point of an ignored "
                                       "class in an ignored box counts once."),
     fact<&IgnoredPointCounts::of_classes>("How many points each ignored class has: a list in the "
@@ -28,7 +30,8 @@ inline constexpr std::tuple kIgnoredPointFacts{
                                         "of the query's ignore_boxes, sorted.")};
 
 /// How much of a path was searched.
-inline constexpr std::tuple kSearchedLengthFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SearchedLength>{
     fact<&SearchedLength::path>("Metres of the whole path."),
     fact<&SearchedLength::whole>(
         "Metres on which all bodies have poses, so that all of them were searched."),
@@ -36,7 +39,8 @@ inline constexpr std::tuple kSearchedLengthFacts{
         "Metres on which some bodies were searched, and others have no pose.")};
 
 /// The answer to a query, but for what the error budget says of it.
-inline constexpr std::tuple kAnswerFacts{
+template <>
+inline constexpr std::tuple kFactsOf<Answer>{
     fact<&Answer::verdict>("The verdict: 'clear', 'conflict' or 'undecided'; 'unknown' of one part "
                            "alone that has no colliding point."),
     fact<&Answer::reasons>(
@@ -97,7 +101,8 @@ inline constexpr std::tuple kAnswerFacts{
     fact<&Answer::shard>("(i, n) where only the i-th of n parts was searched; otherwise None.")};
 
 /// The seconds of a search.
-inline constexpr std::tuple kSearchSecondsFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SearchSeconds>{
     fact<&SearchSeconds::total>("Seconds from the call until the result was written."),
     fact<&SearchSeconds::context>(
         "Seconds that starting the GPUs took, beside all that comes before the engine."),
@@ -113,6 +118,7 @@ inline constexpr std::tuple kSearchSecondsFacts{
     fact<&SearchSeconds::upload>("Seconds in which cells were copied to a GPU."),
     fact<&SearchSeconds::compute>("Seconds in which distances were computed."),
     fact<&SearchSeconds::collect>("Seconds in which what was found was gathered."),
+    fact<&SearchSeconds::depth>("Seconds of finding the free point nearest to each colliding one."),
     fact<&SearchSeconds::swept>("Seconds of finding the cubes that the model sweeps."),
     fact<&SearchSeconds::beams>("Seconds of following the scanner's beams through these cubes."),
     fact<&SearchSeconds::write>("Seconds of writing the result."),
@@ -120,19 +126,22 @@ inline constexpr std::tuple kSearchSecondsFacts{
         "Seconds that the call waited, once the result was written, for the GPUs to end.")};
 
 /// The seconds of a search by which a device was chosen.
-inline constexpr std::tuple kDeviceEstimateFacts{
+template <>
+inline constexpr std::tuple kFactsOf<DeviceEstimate>{
     fact<&DeviceEstimate::cpu>("Estimated seconds on the CPU."),
     fact<&DeviceEstimate::cuda>("Estimated seconds on a GPU, its start included.")};
 
 /// What was read of a store.
-inline constexpr std::tuple kBytesReadFacts{
+template <>
+inline constexpr std::tuple kFactsOf<BytesRead>{
     fact<&BytesRead::coordinates>("Bytes of coordinates."),
     fact<&BytesRead::sources>("Bytes of source indices."),
     fact<&BytesRead::classes>("Bytes of classes."),
     fact<&BytesRead::origins>("Bytes of the origins of beams.")};
 
 /// What a search found beside its answer, and how it searched.
-inline constexpr std::tuple kSearchFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SearchReport>{
     fact<&SearchReport::was_finished>(
         "Whether the result was there already, so that nothing was searched."),
     fact<&SearchReport::model_triangles>("How many triangles the model has; 0 where it is points."),
@@ -161,7 +170,8 @@ inline constexpr std::tuple kSearchFacts{
     fact<&SearchReport::seconds>("How long each part of the search took: a SearchSeconds.")};
 
 /// What a merge found beside its answer.
-inline constexpr std::tuple kMergeFacts{
+template <>
+inline constexpr std::tuple kFactsOf<MergeReport>{
     fact<&MergeReport::was_finished>("The result was there already."),
     fact<&MergeReport::length_unit>(
         "The unit of the environment: 'metre', 'foot', 'us-survey-foot', 'degree' or 'unknown'."),

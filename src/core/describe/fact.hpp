@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <string_view>
+#include <tuple>
 
 namespace clearway {
 
@@ -37,5 +38,9 @@ template <auto kMember>
 constexpr Fact<kMember> fact(const char* doc, const char* key = kNameOfMember<kMember>.data()) {
   return {doc, key};
 }
+
+/// The facts of a report in their order, for JSON and Python; specialised where they are described.
+template <typename Report>
+inline constexpr std::tuple<> kFactsOf{};
 
 }  // namespace clearway

@@ -12,7 +12,8 @@
 namespace clearway {
 
 /// How points found their places on the path of a scanner.
-inline constexpr std::tuple kOriginsPathFacts{
+template <>
+inline constexpr std::tuple kFactsOf<OriginsPathReport>{
     fact<&OriginsPathReport::point_clock>(
         "What the GPS times of the points are: 'week-seconds', 'adjusted' (adjusted standard GPS "
         "time), or 'mixed' where files differ."),
@@ -33,7 +34,8 @@ inline constexpr std::tuple kOriginsPathFacts{
     fact<&OriginsPathReport::without_time>("How many points have no finite GPS time.")};
 
 /// What a conversion did.
-inline constexpr std::tuple kConvertFacts{
+template <>
+inline constexpr std::tuple kFactsOf<ConvertReport>{
     fact<&ConvertReport::was_finished>(
         "Whether the store was there already, so that nothing was converted."),
     fact<&ConvertReport::points>("How many points were stored."),
@@ -81,7 +83,8 @@ inline constexpr std::tuple kConvertFacts{
     fact<&ConvertReport::warnings>("What may be wrong with the scans: a list of Message.")};
 
 /// The conflicts of a result.
-inline constexpr std::tuple kConflictsFacts{
+template <>
+inline constexpr std::tuple kFactsOf<Conflicts>{
     fact<&Conflicts::listed>("The conflicts: a list of Conflict in the order of the path."),
     fact<&Conflicts::small>("A list of SmallGroup along the path: the groups that are not listed."),
     fact<&Conflicts::gap>(
@@ -113,20 +116,23 @@ inline constexpr std::tuple kConflictsFacts{
         "carried the scanner, otherwise 'other'.")};
 
 /// How far a body leaves the path in a curve.
-inline constexpr std::tuple kOverthrowFacts{
+template <>
+inline constexpr std::tuple kFactsOf<Overthrow>{
     fact<&Overthrow::end>(
         "The greatest overthrow of the body's two ends, outwards: metres, or None."),
     fact<&Overthrow::middle>(
         "The greatest overthrow of the body's middle, inwards: metres, or None.")};
 
 /// The path of a result, stretch by stretch.
-inline constexpr std::tuple kStationTableFacts{
+template <>
+inline constexpr std::tuple kFactsOf<StationTable>{
     fact<&StationTable::bodies>("The names of the bodies; for one model a single empty name."),
     fact<&StationTable::rows>("A list of StationRow in the order of the path."),
     fact<&StationTable::warnings>("A list of Message: what the table lacks, and why.")};
 
 /// The shifts of a path.
-inline constexpr std::tuple kShiftTableFacts{
+template <>
+inline constexpr std::tuple kFactsOf<ShiftTable>{
     fact<&ShiftTable::path>("The StretchShift of the whole path."),
     fact<&ShiftTable::conflicts>("A list of StretchShift, one for each conflict, in their order."),
     fact<&ShiftTable::lateral_from>(
@@ -137,7 +143,8 @@ inline constexpr std::tuple kShiftTableFacts{
     fact<&ShiftTable::seconds>("How many seconds it took.")};
 
 /// What is left of an answer without the accepted conflicts.
-inline constexpr std::tuple kOutsideFacts{
+template <>
+inline constexpr std::tuple kFactsOf<OutsideOfAccepted>{
     fact<&OutsideOfAccepted::verdict>(
         "'conflict' where a colliding point is left, of a small group too; otherwise what the "
         "verdict would be if the points of accepted conflicts were not there."),
@@ -147,7 +154,8 @@ inline constexpr std::tuple kOutsideFacts{
                                    "near_points")};
 
 /// A ledger that was compared with a result.
-inline constexpr std::tuple kLedgerFacts{
+template <>
+inline constexpr std::tuple kFactsOf<Ledger>{
     fact<&Ledger::rows>("The rows: a list of LedgerRow in the order of the table; those that an "
                         "update adds come last."),
     fact<&Ledger::conflicts>(
@@ -158,7 +166,8 @@ inline constexpr std::tuple kLedgerFacts{
     fact<&Ledger::accepted_conflicts>("How many conflicts are accepted.")};
 
 /// A stretch on which bodies have no pose.
-inline constexpr std::tuple kUnsearchedFacts{
+template <>
+inline constexpr std::tuple kFactsOf<UnsearchedStretch>{
     fact<&UnsearchedStretch::first_pose>("The path's pose at its start."),
     fact<&UnsearchedStretch::last_pose>("The path's pose at its end."),
     fact<&UnsearchedStretch::chainage_from>("Metres along the path."),
@@ -167,7 +176,8 @@ inline constexpr std::tuple kUnsearchedFacts{
     fact<&UnsearchedStretch::has_answer>("Whether other bodies were searched there.")};
 
 /// A path on a smooth curve.
-inline constexpr std::tuple kSmoothPathFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SmoothPath>{
     fact<&SmoothPath::poses>("The new poses: n x 4 x 4 float64."),
     fact<&SmoothPath::control_points>("How many control points the curve has."),
     fact<&SmoothPath::largest_deviation>(
@@ -182,7 +192,8 @@ inline constexpr std::tuple kSmoothPathFacts{
         "The error_model of a query without between_poses that covers the given path.")};
 
 /// What the page of a report says.
-inline constexpr std::tuple kPageFacts{
+template <>
+inline constexpr std::tuple kFactsOf<ReportSummary>{
     fact<&ReportSummary::clear>("Whether the verdict is 'clear'."),
     fact<&ReportSummary::verdict>("The verdict: 'clear', 'conflict' or 'undecided'."),
     fact<&ReportSummary::bytes>("How many bytes the page has."),

@@ -8,7 +8,8 @@
 namespace clearway {
 
 /// What is not known of a section.
-inline constexpr std::tuple kSectionSeenFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionSeenCounts>{
     fact<&SectionSeenCounts::cube>("The side of the cubes of space, metres."),
     fact<&SectionSeenCounts::unknown>(
         "How many cells are not known somewhere on the path, and not blocked before."),
@@ -16,13 +17,15 @@ inline constexpr std::tuple kSectionSeenFacts{
         "How many cells are not known in each stretch, added up.")};
 
 /// What ignored points would block.
-inline constexpr std::tuple kSectionIgnoredFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionIgnoredCells>{
     fact<&SectionIgnoredCells::blocked>("How many such cells there are."),
     fact<&SectionIgnoredCells::high>(
         "How many of them begin more than 0.5 m above z = 0, where the wheels stand.")};
 
 /// How a section was found.
-inline constexpr std::tuple kSectionReportFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionReport>{
     fact<&SectionReport::blocked>(
         "How many cells of the cross-section are blocked somewhere on the path."),
     fact<&SectionReport::blocked_in_bins>("How many cells are blocked in each stretch, added up."),
@@ -39,20 +42,29 @@ inline constexpr std::tuple kSectionReportFacts{
         "How many cells are not known: SectionSeenCounts, or None unless seen was given."),
     fact<&SectionReport::warnings>("What the section may have misread: a list of Message."),
     fact<&SectionReport::device>("The device that searched: 'cpu' or 'cuda'."),
+    fact<&SectionReport::device_name>(
+        "The name of the device for people, such as that of the GPU."),
+    fact<&SectionReport::estimate>(
+        "The DeviceEstimate by which device 'auto' chose. None where it had no choice."),
     fact<&SectionReport::peak_device_bytes>("How many bytes were taken on the GPU."),
     fact<&SectionReport::needed_host_bytes>("How many bytes of working memory the search took."),
     fact<&SectionReport::seconds>("Seconds of the whole call."),
-    fact<&SectionReport::search_seconds>("Seconds of searching the points.")};
+    fact<&SectionReport::search_seconds>("Seconds of searching the points, without the two below."),
+    fact<&SectionReport::engine_seconds>("Seconds of making the engine with its memory."),
+    fact<&SectionReport::context_wait_seconds>(
+        "Seconds that the search waited for the GPUs to start.")};
 
 /// The ranges that a section was asked for.
-inline constexpr std::tuple kSectionRangeFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionParameters>{
     fact<&SectionParameters::rear>("Where the load begins along x in its own frame."),
     fact<&SectionParameters::front>("Where the load ends along x in its own frame."),
     fact<&SectionParameters::pivots>("The two places of the load that lie on the path, front and "
                                      "rear; None where the load has the poses of the path.")};
 
 /// A place that stops a load.
-inline constexpr std::tuple kSectionStopFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionStop>{
     fact<&SectionStop::bin>("The number of the stretch of the path."),
     fact<&SectionStop::first_pose>("The first pose of the stretch that stops the load."),
     fact<&SectionStop::chainage>("How far along the path that pose is, metres."),
@@ -60,7 +72,8 @@ inline constexpr std::tuple kSectionStopFacts{
                              "and of several the one farthest to the right.")};
 
 /// Whether a load passes.
-inline constexpr std::tuple kSectionCheckFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionCheck>{
     fact<&SectionCheck::verdict>("'passes', 'stopped' or 'unknown'."),
     fact<&SectionCheck::stop>("The first place where the load is stopped: a SectionStop, or None."),
     fact<&SectionCheck::stops>("The first place of each stretch that stops the load: a list of "
@@ -70,7 +83,8 @@ inline constexpr std::tuple kSectionCheckFacts{
         "crossed: a list of SectionStop, empty without seen space.")};
 
 /// The answer to a row of a table of outlines.
-inline constexpr std::tuple kOutlineRowFacts{
+template <>
+inline constexpr std::tuple kFactsOf<OutlineRowCheck>{
     fact<&OutlineRowCheck::line>("The line of the table that has the row."),
     fact<&OutlineRowCheck::chainage_from>("Where the row begins, metres."),
     fact<&OutlineRowCheck::chainage_to>("Where the row ends, metres."),
@@ -80,19 +94,22 @@ inline constexpr std::tuple kOutlineRowFacts{
     fact<&OutlineRowCheck::check>("The answer: a SectionCheck.")};
 
 /// A part of the path without an outline.
-inline constexpr std::tuple kOutlineGapFacts{
+template <>
+inline constexpr std::tuple kFactsOf<OutlineGap>{
     fact<&OutlineGap::chainage_from>("Where the gap begins, metres."),
     fact<&OutlineGap::chainage_to>("Where the gap ends, metres."),
     fact<&OutlineGap::bins>("The first and the last stretch that it touches, which are unknown.")};
 
 /// The answer to a table of outlines beside that of a section.
-inline constexpr std::tuple kOutlineTableFacts{
+template <>
+inline constexpr std::tuple kFactsOf<OutlineTableCheck>{
     fact<&OutlineTableCheck::rows>(
         "The answer to each row, along the path: a list of OutlineRowCheck."),
     fact<&OutlineTableCheck::gaps>("Parts of the path without an outline: a list of OutlineGap.")};
 
 /// The cells of a window.
-inline constexpr std::tuple kSectionGridFacts{
+template <>
+inline constexpr std::tuple kFactsOf<SectionGrid>{
     fact<&SectionGrid::j_from>("The first column of the window."),
     fact<&SectionGrid::j_to>("One more than the last column of the window."),
     fact<&SectionGrid::k_from>("The first row of the window."),

@@ -55,7 +55,7 @@ TEST_CASE("withheld points are told by convert and info, from files and from sta
     const Outcome left_out = require_success(work.run("convert " + input + end, from));
     check_says(left_out.err, "50 of 200 points (25 %) ... --keep-withheld");
     check_json(json_of(left_out), R"({
-      "points": 150, "non_finite": 0, "withheld": 50, "withheld_kept": 0,
+      "points": 150, "non_finite_points": 0, "withheld_points": 50, "kept_withheld_points": 0,
       "warnings": {"0": {"code": "withheld-points"}}})");
     const json store = work.answer("info --json a.h5");
     check_json(store, R"({"non_finite_points": 0, "withheld": {"points": 50, "kept": false}})");
@@ -63,7 +63,7 @@ TEST_CASE("withheld points are told by convert and info, from files and from sta
     check_says(work.run("info a.h5").out, "50 points, left out, in ");
     const Outcome kept = work.run("convert --keep-withheld " + input + end, from);
     check_lacks(kept.err, "--keep-withheld");
-    check_json(json_of(kept), R"({"withheld_kept": 50})");
+    check_json(json_of(kept), R"({"kept_withheld_points": 50})");
     check_json(work.answer("info --json a.h5"), R"({"points": 200, "withheld": {"kept": true}})");
   }
   check_json(work.answer("info --json a.las"), R"({"points": 200, "flags":

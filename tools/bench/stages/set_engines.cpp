@@ -4,7 +4,9 @@
 
 #include "bench/stages/measures.hpp"
 #include "clearway/error.hpp"
+#include "core/describe/answer.hpp"
 #include "core/util/stopwatch.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/paths/content_hash.hpp"
@@ -45,20 +47,6 @@ std::unique_ptr<PageEngineKind> kind_of(const StoreReader& store, const Query& q
   }
 #endif
   return cpu_kind(store, query, options, asked.settings);
-}
-
-Json seconds_of(const SearchSeconds& seconds, double inputs, double total) {
-  return {{"total", total},
-          {"inputs", inputs},
-          {"plan", seconds.plan},
-          {"field", seconds.field},
-          {"engine", seconds.engine},
-          {"search", seconds.search},
-          {"read", seconds.read},
-          {"upload", seconds.upload},
-          {"compute", seconds.compute},
-          {"collect", seconds.collect},
-          {"write", seconds.write}};
 }
 
 }  // namespace
@@ -119,7 +107,9 @@ Json search_with_set_engines(const SetEngines& asked) {
               {"slots", report.slots},
               {"needed_host_bytes", report.needed_host_bytes},
               {"peak_device_bytes", report.peak_device_bytes}});
-  out["seconds"] = seconds_of(report.seconds, inputs, total.seconds());
+  out["seconds"] = json_of_fact(report.seconds);
+  out["seconds"]["inputs"] = inputs;
+  out["seconds"]["total"] = total.seconds();
   return out;
 }
 

@@ -771,6 +771,40 @@ bool is_converted(const ConversionOptions& options, Progress& progress) {
                    Remedy::kOverwriteNotResume);
 }
 
+namespace {
+
+/// Takes the facts and warnings of a conversion that the store keeps.
+void describe(const StoreReader& store, ConvertReport& report, MessageLog& log) {
+  const StoreMetadata& metadata = store.metadata();
+  const auto& [scale, offset] = metadata.quantisation;
+  report.points = metadata.point_count;
+  report.cells = store.cells().size();
+  report.non_finite_points = metadata.points_without_place();
+  const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
+  report.withheld_points = withheld.left_out();
+  report.kept_withheld_points = withheld.points - withheld.left_out();
+  report.scale = {scale[0], scale[1], scale[2]};
+  report.offset = {offset[0], offset[1], offset[2]};
+  report.points_without_origin = metadata.point_count;
+  if (metadata.origins) {
+    report.origins = metadata.origins->quanta.size();
+    report.points_without_origin = metadata.origins->points_without;
+  }
+  if (!store.tree().empty()) {
+    report.box = position_box(metadata.quantisation, store.tree()[0].box);
+  }
+  if (metadata.near) {
+    report.box = metadata.near->whole;
+    report.far_points = metadata.near->left_out;
+    report.unread_points = metadata.near->unread;
+    report.passed_over_files = metadata.near->passed_over;
+  }
+  report.output_bytes = std::filesystem::file_size(store.name());
+  for (const Message& warning : metadata.warnings) log.add(warning);
+}
+
+}  // namespace
+
 ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                       const std::filesystem::path& output, const ConvertOptions& options) {
   const ConversionOptions conversion{options, inputs, output};
@@ -792,8 +826,7 @@ ConvertReport convert(const std::vector<std::filesystem::path>& inputs,
                ".journal: belongs to an unfinished conversion of other inputs or options, and is "
                "left alone; --force removes it");
     }
-    const StoreReader store(output);
-    for (const Message& warning : store.metadata().warnings) log.add(warning);
+    describe(StoreReader(output), report, log);
     if (options.strict) refuse_warnings(report.warnings);
     return report;
   }

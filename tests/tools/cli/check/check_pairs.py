@@ -196,7 +196,7 @@ def check(words, place):
 # What only a search, this machine or this moment knows.
 OF_THE_MOMENT = {
     "seconds", "commands", "reused", "nothing_done", "was_finished", "engine", "device",
-    "device_estimate", "searches", "cells_read", "bytes_read", "resumed_cells",
+    "device_name", "estimate", "searches", "cells_read", "bytes_read", "resumed_cells",
     "pages", "page_bytes", "slots", "needed_host_bytes", "peak_host_bytes", "peak_device_bytes"}
 
 
