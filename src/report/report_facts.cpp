@@ -22,7 +22,6 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
-#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/ledger_words.hpp"
@@ -31,6 +30,7 @@
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/answer_words.hpp"
+#include "report/fact_json.hpp"
 #include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
@@ -38,14 +38,6 @@ namespace clearway {
 namespace {
 
 constexpr const char* kClassNames[] = {"hit", "near", "watch"};
-
-/// The rows as a list of what make(row) gives.
-template <typename Rows, typename Make>
-Json list_of(const Rows& rows, const Make& make) {
-  Json out = Json::array();
-  for (const auto& row : rows) out.push_back(make(row));
-  return out;
-}
 
 /// The number of triangles that belong to no solid.
 std::uint64_t surface_triangles(const Model& model) {
@@ -121,15 +113,15 @@ Json json_of_inputs(const ReportFacts& facts) {
 
 /// The stretches where bodies have no pose, so that nothing is known about them.
 Json json_of_unsearched(const ReportFacts& facts) {
+  using Stretch = UnsearchedStretch;
   const double start = facts.options.conflicts.chainage_start;
-  const auto name_of_body = [&](std::uint32_t body) { return facts.bodies[body].name; };
-  return list_of(facts.unsearched, [&](const UnsearchedStretch& stretch) -> Json {
-    return {{"first_pose", stretch.first_pose},
-            {"last_pose", stretch.last_pose},
-            {"chainage_from", start + stretch.chainage_from},
-            {"chainage_to", start + stretch.chainage_to},
-            {"bodies", list_of(stretch.bodies, name_of_body)},
-            {"has_answer", stretch.has_answer}};
+  return list_of(facts.unsearched, [&](Stretch stretch) {
+    stretch.chainage_from += start;
+    stretch.chainage_to += start;
+    Json out = members_json<&Stretch::first_pose, &Stretch::last_pose, &Stretch::chainage_from,
+                            &Stretch::chainage_to, &Stretch::bodies, &Stretch::has_answer>(stretch);
+    for (Json& body : out["bodies"]) body = facts.bodies[body].name;
+    return out;
   });
 }
 
@@ -180,34 +172,25 @@ Json json_of_classes(const ReportFacts& facts) {
 }
 
 Json json_of(const Overthrow& body) {
-  return {{"end", or_null(body.end)}, {"middle", or_null(body.middle)}};
+  return members_json<&Overthrow::end, &Overthrow::middle>(body);
 }
 
 /// Adds the value of a column, if the row has one or the column is never left out.
 template <typename Column, typename Row>
 void add_finding(Json& json, const Column& column, const Row& row) {
   const auto& value = column.of(row);
-  const std::string key = column.key;
   using Value = typename Column::Value;
   if constexpr (std::is_same_v<Value, Box>) {
-    json["lo"] = value.lo;
-    json["hi"] = value.hi;
+    json.update(Json(value));
   } else if constexpr (std::is_same_v<Value, std::optional<FoundPlace>>) {
+    const std::string key = column.key;
     json[key] = value ? Json(value->distance) : Json();
     json[key + "_source"] = value ? Json(value->source) : Json();
     json[key + "_pose"] = value ? Json(value->pose) : Json();
-  } else if constexpr (std::is_same_v<Value, std::vector<Reason>>) {
-    json[key] = names_of(value);
   } else if constexpr (std::is_same_v<Value, std::vector<Overthrow>>) {
-    json[key] = list_of(value, [](const Overthrow& body) { return json_of(body); });
-  } else if constexpr (std::is_enum_v<Value>) {
-    json[key] = name_of(value);
-  } else if constexpr (requires { name_of(*value); }) {
-    json[key] = value ? Json(name_of(*value)) : Json();
-  } else if constexpr (requires { value.has_value(); }) {
-    if (value || !column.use.is_left_out) json[key] = or_null(value);
-  } else {
-    json[key] = value;
+    json[column.key] = list_of(value, [](const Overthrow& body) { return json_of(body); });
+  } else if (Json fact = fact_json(value); !fact.is_null() || !column.use.is_left_out) {
+    json[column.key] = std::move(fact);
   }
 }
 
@@ -240,13 +223,12 @@ Json json_of(const Conflict& conflict, const ReportFacts& facts) {
 /// The first group along the path that is too small for the list; null where there is none.
 Json first_small(const Conflicts& found) {
   if (found.small.empty()) return {};
-  const SmallGroup& first = found.small.front();
-  return {{"points", first.points},
-          {"source", first.source},
-          {"lo", first.box.lo},
-          {"hi", first.box.hi},
-          {"chainage_from", first.chainage_from},
-          {"chainage_to", first.chainage_to}};
+  using Group = SmallGroup;
+  const Group& first = found.small.front();
+  Json out = members_json<&Group::points, &Group::source>(first);
+  out.update(Json(first.box));
+  out.update(members_json<&Group::chainage_from, &Group::chainage_to>(first));
+  return out;
 }
 
 /// The worst conflicts, at most kMostListedConflicts, in the order of their ids.
@@ -261,18 +243,16 @@ Json json_of_conflicts(const ReportFacts& facts) {
   if (facts.conflicts == nullptr) return {};
   const Conflicts& found = *facts.conflicts;
   const Conflict* worst = worst_of(found);
-  return {{"count", found.listed.size()},
-          {"gap", found.gap},
-          {"min_points", found.min_points},
-          {"spacing", or_null(found.spacing)},
-          {"split", facts.options.conflicts.split},
-          {"groups", found.groups},
-          {"small_groups", found.small_groups},
-          {"small_points", found.small_points},
-          {"first_small", first_small(found)},
-          {"worst", worst == nullptr ? Json() : Json(worst->id)},
-          {"list", list_of(listed_in_page(found),
-                           [&](const Conflict* one) { return json_of(*one, facts); })}};
+  Json out{{"count", found.listed.size()}};
+  out.update(members_json<&Conflicts::gap, &Conflicts::min_points, &Conflicts::spacing>(found));
+  out["split"] = facts.options.conflicts.split;
+  out.update(
+      members_json<&Conflicts::groups, &Conflicts::small_groups, &Conflicts::small_points>(found));
+  out["first_small"] = first_small(found);
+  out["worst"] = worst == nullptr ? Json() : Json(worst->id);
+  out["list"] =
+      list_of(listed_in_page(found), [&](const Conflict* one) { return json_of(*one, facts); });
+  return out;
 }
 
 Json json_of(const StationRow& row) {
@@ -294,18 +274,16 @@ Json json_of_stations(const ReportFacts& facts) {
 }
 
 Json json_of(const StretchShift& row) {
-  return {{"conflict", row.conflict},
-          {"shift", or_null(row.shift)},
-          {"least_distance", or_null(row.least_distance)},
-          {"warned_of", row.warned_of}};
+  return members_json<&StretchShift::conflict, &StretchShift::shift, &StretchShift::least_distance,
+                      &StretchShift::warned_of>(row);
 }
 
 Json json_of(const ShiftTable& table) {
-  return {{"lateral_from", table.lateral_from},
-          {"lateral_to", table.lateral_to},
-          {"step", table.step},
-          {"path", json_of(table.path)},
-          {"list", list_of(table.conflicts, [](const StretchShift& row) { return json_of(row); })}};
+  Json out =
+      members_json<&ShiftTable::lateral_from, &ShiftTable::lateral_to, &ShiftTable::step>(table);
+  out["path"] = json_of(table.path);
+  out["list"] = list_of(table.conflicts, [](const StretchShift& row) { return json_of(row); });
+  return out;
 }
 
 /// What the ledger says of the listed conflicts and of its rows.
@@ -342,7 +320,7 @@ Json json_of_inside(const ReportFacts& facts) {
 }
 
 Json json_of(const PageLattice& lattice) {
-  return {{"origin", lattice.origin}, {"step", lattice.step}};
+  return members_json<&PageLattice::origin, &PageLattice::step>(lattice);
 }
 
 /// A label that is a number: how its column counts, and how its values are written.
@@ -395,41 +373,30 @@ Json json_of_page(const ReportFacts& facts) {
 /// Adds the error budget with its two margins, in the environment's unit; nothing without one.
 void add_budget(Json& json, const Answer& answer) {
   if (!answer.budget) return;
-  const ErrorBudget& b = *answer.budget;
-  json["margins"] = {{"clear", b.clear()}, {"conflict", b.conflict()}};
-  json["budget"] = {{"scan", b.scan},    {"registration", b.registration},
-                    {"pose", b.pose},    {"angle", b.angle},
-                    {"lever", b.lever},  {"model", b.model},
-                    {"step", b.step},    {"motion", b.motion},
-                    {"chord", b.chord},  {"spacing", b.spacing},
-                    {"sigmas", b.sigmas}};
+  using Budget = ErrorBudget;
+  json["margins"] = members_json<&Budget::clear, &Budget::conflict>(*answer.budget);
+  json["budget"] = members_json<&Budget::scan, &Budget::registration, &Budget::pose, &Budget::angle,
+                                &Budget::lever, &Budget::model, &Budget::step, &Budget::motion,
+                                &Budget::chord, &Budget::spacing, &Budget::sigmas>(*answer.budget);
   json["near_points"] = answer.near_points;
   json["certain_points"] = answer.certain.points;
 }
 
 Json json_of(const UnseenGroup& group, const ReportFacts& facts) {
-  return {{"id", group.id},
-          {"cubes", group.cubes},
-          {"shown", shown_cubes(facts.unseen, group)},
-          {"lo", group.box.lo},
-          {"hi", group.box.hi},
-          {"middle", group.middle},
-          {"first_pose", group.first_pose},
-          {"last_pose", group.last_pose},
-          {"chainage_from", group.chainage_from},
-          {"chainage_to", group.chainage_to},
-          {"side", name_of(group.side)},
-          {"seen", or_null(group.seen)},
-          {"behind_conflict", group.behind_conflict},
-          {"along_path", group.along_path},
-          {"is_ground", group.is_ground},
-          {"is_sky", group.is_sky}};
+  using Group = UnseenGroup;
+  Json out = members_json<&Group::id, &Group::cubes>(group);
+  out["shown"] = shown_cubes(facts.unseen, group);
+  out.update(Json(group.box));
+  out.update(
+      members_json<&Group::middle, &Group::first_pose, &Group::last_pose, &Group::chainage_from,
+                   &Group::chainage_to, &Group::side, &Group::seen, &Group::behind_conflict,
+                   &Group::along_path, &Group::is_ground, &Group::is_sky>(group));
+  return out;
 }
 
 /// What is known of the space that the model sweeps.
 Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
   const UnseenGroups& unseen = facts.unseen;
-  const UnseenFront& front = unseen.front;
   const Answer& answer = facts.answer;
   const auto& origins = facts.store.reader().metadata().origins;
   Json out;
@@ -439,18 +406,16 @@ Json json_of(const SeenSummary& seen, const ReportFacts& facts) {
   out["seen_min"] = answer.parameters.seen_min;
   out["behind_conflicts"] = unseen.behind_conflicts;
   out["origins"] = Json::array();
-  if (origins) {
-    out["origins"] = list_of(origins->rest_on, [](const OriginBasis& basis) -> Json {
-      return {{"what", basis.what}, {"points", basis.points}};
-    });
+  for (const OriginBasis& basis : origins ? origins->rest_on : std::vector<OriginBasis>{}) {
+    out["origins"].push_back(members_json<&OriginBasis::what, &OriginBasis::points>(basis));
   }
   out["points_without_origin"] = origins ? origins->points_without : answer.environment_points;
   out["places"] = origins ? origins->quanta.size() : 0;
   out["list"] = list_of(unseen.listed, [&](const UnseenGroup& one) { return json_of(one, facts); });
   out["stretches"] = unseen.stretches;
-  out["front"] = {{"cell", front.cell},    {"columns", front.columns}, {"rows", front.rows},
-                  {"left", front.left},    {"up", front.up},           {"swept", front.swept},
-                  {"unseen", front.unseen}};
+  using Front = UnseenFront;
+  out["front"] = members_json<&Front::cell, &Front::columns, &Front::rows, &Front::left, &Front::up,
+                              &Front::swept, &Front::unseen>(unseen.front);
   return out;
 }
 

@@ -21,7 +21,7 @@ Json json_of_warnings(const SectionView& view, const SectionPageOptions& options
   const auto add = [&](const Message& warning) {
     out.push_back({{"code", warning.code}, {"message", warning.text}});
   };
-  for (const Message& warning : view.section().data().warnings) add(warning);
+  for (const Message& warning : view.section.data().warnings) add(warning);
   for (const Message& warning : options.warnings) {
     if (warning.severity == Message::Severity::kWarning) add(warning);
   }
@@ -39,7 +39,7 @@ SectionPageSummary write_section_page(const Section& section, const std::filesys
   facts["unit"] = section.data().length_unit;
   facts["warnings"] = json_of_warnings(view, options);
   facts["section"] = view.facts();
-  SectionPageSummary summary{.check = view.check(), .sentence = view.sentence()};
+  SectionPageSummary summary{.check = view.check, .sentence = view.sentence()};
   summary.facts = page_text(facts);
   PageContent content{
       .title = title, .facts = summary.facts, .section = section_svg(view, false), .columns = {}};
