@@ -8,7 +8,7 @@ const page = {
   points: null,
   model: null,
   poses: null,
-  bodyPoses: null,    // of a vehicle of several bodies, see columns.js
+  bodyPoses: null,    // of each body of a vehicle at each shown pose, body after body
   pose: 0,            // which of the shown poses the model has
   conflict: null,     // the selected one
   group: null,        // the selected group of unseen cubes

@@ -3,7 +3,8 @@
 /** Values across from `from` to `to` and up from `low` to `high`; in pixels its size, and what is left around its field. */
 class Chart {
   constructor(bottom) {
-    Object.assign(this, { from: 0, to: 1, low: 0, high: 1, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom, crowded: 0 });
+    Object.assign(this, { from: 0, to: 1, low: 0, high: 1, width: 1000, height: 300, left: 62, right: 16, top: 26, bottom, crowded: 0,
+                          title: `chainage (${unitSymbol})` });
   }
 
   get wide() { return this.width - this.left - this.right; }
@@ -31,19 +32,19 @@ class Chart {
   }
 
   /** Round values of both axes, `most` of them upwards, with lines through the field or, where marked, with marks beside it. */
-  axes(most, marked) {
+  axes(most, marked, words = minus) {
     const out = [], kind = marked ? "tick" : "grid", { left, top, base } = this, right = left + this.wide;
     for (const value of ticks(this.low, this.high, most)) {
       const y = this.y(value), [x1, x2] = marked ? [left - 5, left] : [left, right];
       out.push(make("line", { x1, x2, y1: y, y2: y, class: kind }),
-               make("text", { x: left - 8, y: y + 4, class: "end" }, String(value).replace("-", "−")));
+               make("text", { x: left - 8, y: y + 4, class: "end" }, words(value)));
     }
-    for (const value of ticks(this.from, this.to, this.width / 90)) {
+    for (const value of ticks(Math.min(this.from, this.to), Math.max(this.from, this.to), this.width / 90)) {
       const x = this.x(value), [y1, y2] = marked ? [base, base + 5] : [top, base];
       out.push(make("line", { x1: x, x2: x, y1, y2, class: kind }),
-               make("text", { x, y: base + 17, class: "middle" }, String(value)));
+               make("text", { x, y: base + 17, class: "middle" }, words(value)));
     }
-    out.push(make("text", { x: right, y: this.height - 4, class: "end" }, `chainage (${unitSymbol})`));
+    out.push(this.title && make("text", { x: right, y: this.height - 4, class: "end" }, this.title));
     return out;
   }
 
@@ -81,11 +82,15 @@ class Chart {
     });
   }
 
+  svg(attributes, content) {
+    const { width, height } = this;
+    return make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, ...attributes }, ...content);
+  }
+
   /** Puts the chart into its place, with elements below it. It keeps the focus. */
   show(holder, label, content, ...below) {
-    const { width, height } = this, focused = holder.contains(document.activeElement);
-    const svg = make("svg", { viewBox: `0 0 ${width} ${height}`, width, height, tabindex: 0, role: "application", "aria-label": label },
-                     ...content);
+    const focused = holder.contains(document.activeElement);
+    const svg = this.svg({ tabindex: 0, role: "application", "aria-label": label }, content);
     holder.replaceChildren(svg, ...below, crowdedBars(this.crowded));
     if (focused) svg.focus();
     return svg;
@@ -95,6 +100,8 @@ class Chart {
 /** How many bars below an axis have no room for their number; nothing where all have it. */
 const crowdedBars = (bars) => bars === 0 ? "" : make("p", { class: "note" },
     `${plural(bars, "bar")} below the axis ${bars === 1 ? "has" : "have"} no room for a number; the table has all of them.`);
+
+const minus = (value) => String(value).replace("-", "−");
 
 /** Values at round steps from a to b. */
 function ticks(a, b, most) {

@@ -70,28 +70,24 @@ async function readLabel({ key, step, origin }) {
                             : Float64Array.from(integersOf(bytes), (n) => n * step + origin);
 }
 
-async function readPoses() {
-  const facts = page.facts.page, start = page.facts.inputs.trajectory.chainage_start;
-  const read = async (name) => integersOf(await columnBytes("pose." + name));
-  const [index, x, y, z, chainage, distance, px, py, pz] = await Promise.all(
-      ["index", "x", "y", "z", "chainage", "distance", "px", "py", "pz"].map(read));
-  const rotation = await Promise.all([...Array(9).keys()].map((k) => read("r" + k)));
-  const labels = await Promise.all(facts.labels.map(async (label) => [label.key, await readLabel(label)]));
-  return {
-    count: index ? index.length : 0,
-    index, x, y, z, rotation, distance, px, py, pz,
-    chainage: chainage ? Float64Array.from(chainage, (c) => start + c * facts.chainage_step) : [],
-    labels: Object.fromEntries(labels),
-  };
+/** Columns of integers by their names; null where the page lacks one. */
+async function readIntegers(kind, names) {
+  const read = async (name) => [name, integersOf(await columnBytes(`${kind}.${name}`))];
+  return Object.fromEntries(await Promise.all(names.map(read)));
 }
 
-/** Of each body at each shown pose, body after body; null where there is but the model. */
-async function readBodyPoses() {
-  if (!page.facts.inputs.model.bodies) return null;
-  const read = async (name) => integersOf(await columnBytes("body." + name));
-  const [there, x, y, z] = await Promise.all(["there", "x", "y", "z"].map(read));
-  const rotation = await Promise.all([...Array(9).keys()].map((k) => read("r" + k)));
-  return { there, x, y, z, rotation };
+/** Places and rotations of poses, and further columns of integers. */
+async function readPlaces(kind, ...names) {
+  const rotation = await readIntegers(kind, [...Array(9).keys()].map((k) => `r${k}`));
+  return { ...await readIntegers(kind, ["x", "y", "z", ...names]), rotation: Object.values(rotation) };
+}
+
+async function readPoses() {
+  const facts = page.facts.page, start = page.facts.inputs.trajectory.chainage_start;
+  const poses = await readPlaces("pose", "index", "chainage", "distance", "px", "py", "pz");
+  const labels = await Promise.all(facts.labels.map(async (label) => [label.key, await readLabel(label)]));
+  return { ...poses, count: poses.index?.length ?? 0, labels: Object.fromEntries(labels),
+           chainage: Float64Array.from(poses.chainage ?? [], (c) => start + c * facts.chainage_step) };
 }
 
 /** Which of the model's points each body has: {first, count}. */
@@ -111,7 +107,7 @@ async function readAll() {
     readPoints("points", facts.lattice),
     readPoints("model", facts.model_lattice, facts.model_lattice.origin),
     readPoses(),
-    readBodyPoses(),
+    page.facts.inputs.model.bodies && readPlaces("body", "there"),
   ]);
   page.model.ranges = bodyRanges();
   if (page.facts.seen?.list.length > 0) page.unseen = await readPoints("unseen", facts.lattice);

@@ -24,7 +24,8 @@ function detailedDistance({ least_distance: distance }) {
 
 function conflictFacts(conflict) {
   const { query } = page.facts, words = classOf(conflict.least_distance);
-  const rows = [
+  const known = conflict.least_distance !== null;
+  return factsTable(
     ...ledgerDetails(conflict),
     conflict.class && ["Certainty", conflict.class === "certain"
         ? "certain, even with the errors of the budget" : "possible: the errors leave it open"],
@@ -32,29 +33,19 @@ function conflictFacts(conflict) {
     conflict.station_from !== undefined && ["Station", `${stationsCell(conflict)} m`],
     conflict.obstacle_chainage !== null && ["Obstacle", `stands at chainage ${placeWords(conflict.obstacle_chainage)}`],
     conflict.body !== undefined && ["Body", conflict.body],
-    ["Place", coordinates(conflict.nearest_point ?? conflict.centroid)],
+    ["Place", coordinates(placeOfTable(conflict))],
     offsetWords(conflict) && ["Offset", offsetWords(conflict)],
-  ];
-  if (conflict.least_distance !== null) {
-    rows.push(["Distance", `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`],
-              ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is) ||
-                          "nothing, but with the errors it may be too close"]);
-  } else {
-    rows.push(["Distance", `closer than ${shortLength(query.radius)}; run with --clearance to know it`]);
-  }
-  if (conflict.points_inside > 0) {
-    rows.push(["Inside", `${count(conflict.points_inside)} of its points`]);
-  }
-  if ((conflict.depth_source ?? null) !== null) {
-    rows.push(["Depth", `${metres(conflict.depth)} to the nearest free point, an estimate`]);
-  }
-  if (conflict.remedy) rows.push(["Remedy", conflict.remedy]);
-  if (page.facts.shifts) rows.push(["Frees it", freedWords(conflict)]);
-  if (conflict.classified) rows.push(["Classes", conflict.classified]);
-  rows.push(["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
-            ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}` +
-             nearestPoseWords(conflict)]);
-  return factsTable(...rows);
+    ["Distance", known ? `${words.symbol} ${words.name}: ${detailedDistance(conflict)}`
+        : `closer than ${shortLength(query.radius)}; run with --clearance to know it`],
+    known && ["Missing", missingWords(conflict.encroachment, conflict.least_distance, conflict.encroachment_is) ||
+        "nothing, but with the errors it may be too close"],
+    conflict.points_inside > 0 && ["Inside", `${count(conflict.points_inside)} of its points`],
+    (conflict.depth_source ?? null) !== null && ["Depth", `${metres(conflict.depth)} to the nearest free point, an estimate`],
+    conflict.remedy && ["Remedy", conflict.remedy],
+    page.facts.shifts && ["Frees it", freedWords(conflict)],
+    conflict.classified && ["Classes", conflict.classified],
+    ["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
+    ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}${nearestPoseWords(conflict)}`]);
 }
 
 /** The three pictures, drawn at once. width: of each in pixels. */

@@ -1,8 +1,5 @@
 // The vehicle's cross-section, seen along its path: how much was not scanned in each place of it.
 
-const kNotSwept = "#d1d5db";
-const kFrontMargin = { left: 62, right: 16, top: 30, bottom: 46 };
-
 /** Cells that are swept on less than this share of the greatest length are drawn small. */
 const kLittleSwept = 0.1;
 
@@ -15,85 +12,34 @@ function percentWords(share) {
   return String(percent === 0 && share > 0 ? "<1" : percent === 100 && share < 1 ? ">99" : percent);
 }
 
-/** Draws the grid with its numbers and axes, and the outline of the vehicle over it. */
-function drawFront(canvas) {
-  const { front } = seenFacts(), { width } = canvas, context = canvas.getContext("2d");
-  const { left: marginLeft, right, top, bottom } = kFrontMargin, scale = width / 1000;
-  const pixels = Math.min((width - (marginLeft + right) * scale) / front.columns,
-                          (canvas.height - (top + bottom) * scale) / front.rows);
-  const x0 = (width - pixels * front.columns + (marginLeft - right) * scale) / 2, y0 = top * scale;
-  const most = Math.max(...front.swept);
-  context.fillStyle = "#fff";
-  context.fillRect(0, 0, width, canvas.height);
-  context.fillStyle = kNotSwept;
-  context.fillRect(x0, y0, pixels * front.columns, pixels * front.rows);
-  front.swept.forEach((swept, i) => {
-    const share = frontShare(front, i);
-    if (share === null) return;
-    const column = i % front.columns, row = Math.floor(i / front.columns);
-    const x = x0 + (front.columns - 1 - column) * pixels, y = y0 + (front.rows - 1 - row) * pixels;
-    const small = swept < kLittleSwept * most, inset = small ? 0.3 * pixels : 0;
-    context.fillStyle = `rgb(${shadeOf(share).join(",")})`;
-    context.fillRect(x + inset, y + inset, pixels - 2 * inset + (small ? 0 : 0.5),
-                     pixels - 2 * inset + (small ? 0 : 0.5));
-    if (small || share === 0) return;
-    const words = percentWords(share);
-    context.fillStyle = share > 0.45 ? "#fff" : "#111827";
-    setFont(context, Math.min(0.44 * pixels, 1.5 * pixels / words.length), "600");
-    context.textAlign = "center";
-    context.fillText(words, x + pixels / 2, y + 0.64 * pixels);
+/** The cells that are swept, with their numbers. side: of a cell in pixels. */
+function frontCells(chart, side) {
+  const { front } = seenFacts(), { cell, columns } = front, most = Math.max(...front.swept);
+  return front.swept.map((swept, i) => {
+    const share = frontShare(front, i), words = percentWords(share), small = swept < kLittleSwept * most, inset = small ? 0.3 * side : 0;
+    const x = chart.x(front.left + (i % columns + 1) * cell), y = chart.y(front.up + (Math.floor(i / columns) + 1) * cell);
+    return share !== null && make("g", {},
+        make("rect", { x: x + inset, y: y + inset, width: side - 2 * inset, height: side - 2 * inset, fill: `rgb(${shadeOf(share).join(",")})` }),
+        !small && share > 0 && make("text", { x: x + side / 2, y: y + 0.64 * side, class: "middle strong", style:
+            `font-size: ${Math.min(0.44 * side, 1.5 * side / words.length)}px; fill: ${share > 0.45 ? "#fff" : "#111827"}` }, words));
   });
-  drawFrontVehicle(context, x0, y0, pixels);
-  drawFrontAxes(context, x0, y0, pixels, scale);
 }
 
 /** The outline of the vehicle in the middle of its path, seen from behind it. */
-function drawFrontVehicle(context, x0, y0, pixels) {
-  if (page.poses.count === 0) return;
-  const { front } = seenFacts(), shown = Math.floor(page.poses.count / 2);
-  if (bodiesAt(shown).length === 0) return;
-  const width = Math.round(pixels * front.columns), height = Math.round(pixels * front.rows);
-  const pose = poseAt(shown), { forward, left, up } = vehicleAt(shown);
+function frontVehicle(chart) {
+  const shown = Math.floor(page.poses.count / 2), { front } = seenFacts();
+  if (page.poses.count === 0 || bodiesAt(shown).length === 0) return "";
+  const width = Math.round(1.4 * chart.wide), height = Math.round(1.4 * chart.tall), v = vehicleAt(shown);
   const middle = (least, cells) => least + 0.5 * cells * front.cell;
-  const origin = plus(plus(pose.t, left, middle(front.left, front.columns)), up,
-                      middle(front.up, front.rows));
-  const painter = new Painter(width, height, { origin, right: times(left, -1), up,
-      toViewer: times(forward, -1), distance: 0, halfWidth: 0.5 * front.columns * front.cell,
-      halfHeight: 0.5 * front.rows * front.cell });
-  const v = vehicleAt(shown), spacing = Math.sqrt(v.length * (v.width + v.height) * 2 / page.model.count);
+  const origin = plus(plus(v.pose.t, v.left, middle(front.left, front.columns)), v.up, middle(front.up, front.rows));
+  const painter = new Painter(width, height, { origin, right: times(v.left, -1), up: v.up, toViewer: times(v.forward, -1),
+      distance: 0, halfWidth: 0.5 * front.columns * front.cell, halfHeight: 0.5 * front.rows * front.cell });
+  const spacing = Math.sqrt(v.length * (v.width + v.height) * 2 / page.model.count);
   const close = Math.ceil(clamp(Math.max(0.06, spacing) * painter.perMetre, 2, 60));
-  const mask = eroded(maskOf(painter, movedModel(shown), close + 1), width, height, close);
   const layer = new OffscreenCanvas(width, height);
-  drawMask(layer.getContext("2d"), mask, width, height, [0, 0, 0, 0], [255, 255, 255, 255]);
-  for (const [dx, dy] of [[-2, 0], [2, 0], [0, -2], [0, 2]]) context.drawImage(layer, x0 + dx, y0 + dy);
-  drawMask(layer.getContext("2d"), mask, width, height, [0, 0, 0, 0], [0, 90, 72, 255]);
-  for (const [dx, dy] of [[0, 0], [1, 0], [0, 1]]) context.drawImage(layer, x0 + dx, y0 + dy);
-}
-
-function drawFrontAxes(context, x0, y0, pixels, scale) {
-  const { front } = seenFacts();
-  const wide = pixels * front.columns, high = pixels * front.rows;
-  context.strokeStyle = "#111827";
-  context.lineWidth = scale;
-  context.strokeRect(x0, y0, wide, high);
-  context.fillStyle = "#111827";
-  setFont(context, 13 * scale);
-  const perMetre = pixels / front.cell;
-  for (const y of ticks(front.left, front.left + front.columns * front.cell, 8)) {
-    const x = x0 + wide - (y - front.left) * perMetre;
-    context.fillRect(x - scale / 2, y0 + high, scale, 5 * scale);
-    haloText(context, signed(y).replace(/0$/, ""), x, y0 + high + 19 * scale, "center");
-  }
-  for (const z of ticks(front.up, front.up + front.rows * front.cell, 6)) {
-    const y = y0 + high - (z - front.up) * perMetre;
-    context.fillRect(x0 - 5 * scale, y - scale / 2, 5 * scale, scale);
-    haloText(context, signed(z).replace(/0$/, ""), x0 - 9 * scale, y + 4 * scale, "right");
-  }
-  setFont(context, 13 * scale, "600");
-  haloText(context, "← its left", x0, y0 + high + 40 * scale, "left");
-  haloText(context, `from the path (${unitSymbol})`, x0 + wide / 2, y0 + high + 40 * scale, "center");
-  haloText(context, "its right →", x0 + wide, y0 + high + 40 * scale, "right");
-  haloText(context, `height above the path (${unitSymbol})`, x0, y0 - 10 * scale, "left");
+  drawMask(layer.getContext("2d"), eroded(maskOf(painter, movedModel(shown), rowsOfDisc(close + 1)), width, height, close), width, height,
+           (x, y, isEdge) => [0, 90, 72, isEdge ? 255 : 0]);
+  return make("image", { ...chart.field, href: addressOf(layer), class: "outline" });
 }
 
 /** Where most is unseen, for those who do not see the picture. */
@@ -115,21 +61,24 @@ function frontWords() {
 }
 
 function buildFront() {
-  const { front } = seenFacts();
-  if (!(front.columns > 0)) return;
-  const canvas = make("canvas", { width: 1400, role: "img", id: "front-canvas", "aria-label":
-      `The vehicle's cross-section, looking forward. ${frontWords()}` });
-  const { left, right, top, bottom } = kFrontMargin, scale = canvas.width / 1000;
-  const high = (canvas.width - (left + right) * scale) * front.rows / front.columns;
-  canvas.height = Math.round(clamp(high + (top + bottom) * scale, 500, 1200));
-  const most = Math.max(...front.swept);
-  const little = front.swept.some((length) => length > 0 && length < kLittleSwept * most);
-  byId("unseen-front").append(make("figure", {}, canvas,
+  const { front } = seenFacts(), { cell, columns, rows, left, up } = front;
+  if (!(columns > 0)) return;
+  const chart = Object.assign(new Chart(46), { from: left + columns * cell, to: left, low: up, high: up + rows * cell, title: "" });
+  const side = Math.min(chart.wide / columns, 780 / rows), aside = (chart.wide - side * columns) / 2;
+  Object.assign(chart, { left: chart.left + aside, right: chart.right + aside, height: chart.top + side * rows + chart.bottom });
+  const words = (x, y, kind, text) => make("text", { x, y, class: `${kind} strong` }, text), below = chart.base + 40;
+  const picture = chart.svg({ id: "front-picture", role: "img", "aria-label": `The vehicle's cross-section, looking forward. ${frontWords()}` }, [
+    make("rect", { ...chart.field, class: "not-swept" }),
+    make("g", { "shape-rendering": "crispEdges" }, frontCells(chart, side)), frontVehicle(chart),
+    make("rect", { ...chart.field, fill: "none", stroke: "#111827" }), chart.axes(6, true, (value) => (value > 0 ? "+" : "") + minus(value)),
+    words(chart.left, below, "", "← its left"), words(chart.left + chart.wide / 2, below, "middle", `from the path (${unitSymbol})`),
+    words(chart.left + chart.wide, below, "end", "its right →"), words(chart.left, chart.top - 10, "", `height above the path (${unitSymbol})`)]);
+  const most = Math.max(...front.swept), little = front.swept.some((length) => length > 0 && length < kLittleSwept * most);
+  byId("unseen-front").append(make("figure", {}, picture,
       make("figcaption", {}, make("strong", {}, "The vehicle, seen from behind. "),
            "A number says how many percent of the space that the vehicle sweeps at this place of its " +
            "cross-section were not scanned. Darker is more, white is all scanned, and grey is not swept. " +
            (little ? "Small squares are places that the vehicle sweeps on less than a tenth of the way. " : "") +
-           `A cell is ${shortLength(front.cell)} wide. The line is the vehicle's outline. ${frontWords()}`)),
+           `A cell is ${shortLength(cell)} wide. The line is the vehicle's outline. ${frontWords()}`)),
       shadeScale((share) => share, (share) => `${100 * share} %`));
-  drawFront(canvas);
 }

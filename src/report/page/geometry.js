@@ -72,6 +72,11 @@ function poseAtChainage(chainage) {
   return at > 0 && chainage - list[at - 1] <= list[at] - chainage ? at - 1 : at;
 }
 
+/** The places of a point set, one after the other. */
+function* placesOf({ xyz }) {
+  for (let i = 0; i < xyz.length; i += 3) yield [xyz[i], xyz[i + 1], xyz[i + 2]];
+}
+
 /** The box around places; nothing where there are none. */
 function boxAround(places) {
   const lo = [Infinity, Infinity, Infinity], hi = [-Infinity, -Infinity, -Infinity];

@@ -111,12 +111,14 @@ class Painter {
     pixels.set(out);
   }
 
-  /** Onto a canvas, whose own content stays where nothing was painted. */
-  show(context, x = 0, y = 0) {
-    const holder = new OffscreenCanvas(this.width, this.height);
-    holder.getContext("2d").putImageData(this.image, 0, 0);
-    context.drawImage(holder, x, y);
-  }
+  show(context) { putImage(context, this.image); }
+}
+
+/** Draws an image onto a canvas, whose own content stays where the image is clear. */
+function putImage(context, image) {
+  const holder = new OffscreenCanvas(image.width, image.height);
+  holder.getContext("2d").putImageData(image, 0, 0);
+  context.drawImage(holder, 0, 0);
 }
 
 const packed = ([r, g, b]) => (255 << 24 | b << 16 | g << 8 | r) >>> 0;

@@ -12,10 +12,9 @@ function rowsOfDisc(radius) {
   return [...widths];
 }
 
-/** Pixels within `radius` of a point of the set that passes keep(depth). */
-function maskOf(painter, points, radius, keep) {
-  const { width, height } = painter, mask = new Uint8Array(width * height);
-  const rows = rowsOfDisc(radius), done = new Uint8Array(width * height);
+/** Pixels of these rows around each of the points that passes keep(depth). */
+function maskOf(painter, points, rows, keep) {
+  const { width, height } = painter, mask = new Uint8Array(width * height), done = new Uint8Array(width * height);
   for (const p of points) {
     const at = painter.project(p);
     if (!at || (keep && !keep(at[2]))) continue;
@@ -49,9 +48,9 @@ function eroded(mask, width, height, radius) {
   return pass(pass(mask, height, width, width, 1), width, height, 1, width);
 }
 
-/** Fills a mask and draws its edge, onto the canvas. */
-function drawMask(context, mask, width, height, fill, edge, dashed) {
-  const image = new ImageData(width, height), data = image.data;
+/** Draws a mask. colour(x, y, isEdge): of a pixel, with its opacity. */
+function drawMask(context, mask, width, height, colour) {
+  const image = new ImageData(width, height);
   for (let y = 0; y < height; ++y) {
     for (let x = 0; x < width; ++x) {
       const at = y * width + x;
@@ -59,14 +58,10 @@ function drawMask(context, mask, width, height, fill, edge, dashed) {
       const inside = x > 0 && y > 0 && x < width - 1 && y < height - 1 && mask[at - 1] &&
           mask[at + 1] && mask[at - width] && mask[at + width] && mask[at - width - 1] &&
           mask[at + width + 1];
-      const gap = dashed && (x + y >> 2) % 3 === 0;
-      const [r, g, b, a] = inside || gap ? fill : edge;
-      data.set([r, g, b, a], 4 * at);
+      image.data.set(colour(x, y, !inside), 4 * at);
     }
   }
-  const holder = new OffscreenCanvas(width, height);
-  holder.getContext("2d").putImageData(image, 0, 0);
-  context.drawImage(holder, 0, 0);
+  putImage(context, image);
 }
 
 /** Points of all bodies at shown pose i, in the page's coordinates. */
@@ -146,15 +141,15 @@ function drawModel(context, painter, { body }, vehicle, kind, thickness) {
       Math.max(page.model.ranges[bodyNumber(body) ?? 0].count, 1)) * painter.perMetre;
   if (kind === "section") {
     const radius = page.facts.query.radius * painter.perMetre;
-    drawMask(context, maskOf(painter, points, radius, inSlab), width, height,
-             [194, 65, 12, 26], [194, 65, 12, 255], true);
+    drawMask(context, maskOf(painter, points, rowsOfDisc(radius), inSlab), width, height,
+             (x, y, isEdge) => [194, 65, 12, isEdge && (x + y >> 2) % 3 !== 0 ? 255 : 26]);
   }
   const close = Math.ceil(clamp(1.2 * spacing, 1, 14));
-  const grown = maskOf(painter, points, close + 1, inSlab);
+  const grown = maskOf(painter, points, rowsOfDisc(close + 1), inSlab);
   const mask = eroded(grown, width, height, close);
   const [r, g, b] = kModelRgb;
   drawMask(context, kind === "section" ? grownOnce(mask, width) : mask, width, height,
-           [r, g, b, kind === "section" ? 200 : 48], [0, 90, 72, 255]);
+           (x, y, isEdge) => isEdge ? [0, 90, 72, 255] : [r, g, b, kind === "section" ? 200 : 48]);
 }
 
 /** A thin section stays visible. */

@@ -84,7 +84,7 @@ function profileAxes() {
   const { left, top, tall, wide, width } = profile, right = left + wide, out = profile.axes(6);
   for (const [c, value] of stationTicks(width / 90).filter(([at]) => profileX(at) > left + 20)) {
     out.push(make("line", { x1: profileX(c), x2: profileX(c), y1: top, y2: top + 5, class: "tick" }),
-             make("text", { x: profileX(c), y: top + 16, class: "middle station" }, String(value).replace("-", "−")));
+             make("text", { x: profileX(c), y: top + 16, class: "middle station" }, minus(value)));
   }
   if (page.poses.labels.station) out.push(make("text", { x: right, y: top - 8, class: "end station" }, "station (m)"));
   out.push(make("text", { x: 14, y: top + tall / 2, class: "middle", transform: `rotate(-90 14 ${top + tall / 2})` },
@@ -212,14 +212,12 @@ function zoomProfile(factor, at) {
   const all = profileLength(), span = clamp((profile.to - profile.from) * factor, all / 5000, all);
   const centre = at ?? page.poses.chainage[page.pose] ?? profileStart() + all / 2;
   const share = clamp((centre - profile.from) / (profile.to - profile.from), 0, 1);
-  profile.from = stretchStart(centre - share * span, span);
-  profile.to = profile.from + span;
-  drawProfile();
+  showProfileFrom(centre - share * span, span);
 }
 
-function panProfile(metresAlong) {
-  const span = profile.to - profile.from;
-  profile.from = stretchStart(profile.from + metresAlong, span);
+/** Shows a stretch of that length, as far as the path goes. */
+function showProfileFrom(from, span = profile.to - profile.from) {
+  profile.from = stretchStart(from, span);
   profile.to = profile.from + span;
   drawProfile();
 }
@@ -230,7 +228,7 @@ function watchProfile(svg) {
   svg.addEventListener("pointermove", (event) => {
     const chainage = stretchStart(chainageAt(svg, event), 0);
     if (event.buttons & 1) {
-      panProfile((profile.grip ?? chainage) - chainage);
+      showProfileFrom(profile.from + (profile.grip ?? chainage) - chainage);
     } else if (page.poses.count > 0) {
       showProfileValue(poseAtChainage(chainage));
     }
@@ -293,14 +291,9 @@ function placeProfileCursor(i) {
 /** The chosen pose stays in sight. */
 function moveProfileCursor() {
   if (page.poses.count === 0) return;
-  const chainage = page.poses.chainage[page.pose], span = profile.to - profile.from;
-  if (chainage < profile.from || chainage > profile.to) {
-    profile.from = stretchStart(chainage - span / 2, span);
-    profile.to = profile.from + span;
-    drawProfile();
-    return;
-  }
-  showProfileValue(page.pose);
+  const chainage = page.poses.chainage[page.pose];
+  if (chainage < profile.from || chainage > profile.to) showProfileFrom(chainage - (profile.to - profile.from) / 2);
+  else showProfileValue(page.pose);
 }
 
 /** The pose of the least distance, seen from near where all of the path is shown. */

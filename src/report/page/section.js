@@ -7,7 +7,7 @@ const section = {
   first: null,                // first pose of each blocked cell of the whole path, row by row
   whole: null, stops: null,   // bits of the window's cells
   cells: null, unknown: null, // the same for each stretch, one after the other
-  left: null, right: null, leftPose: null, rightPose: null,  // for each stretch and, last, the whole path: bands
+  left: null, right: null, left_pose: null, right_pose: null,  // for each stretch and, last, the whole path: bands
   chosen: null,               // which of the stretches is shown: an index, or null for the whole path
   shown: undefined,           // the same with what the pointer is over
   band: 0,                    // the band of height that the cursor is in
@@ -15,11 +15,8 @@ const section = {
 
 async function readSection() {
   if (!section.facts) return;
-  const integers = async (name) => integersOf(await columnBytes(`section.${name}`));
-  const millimetres = await integers("chainage");
-  section.chainage = Float64Array.from(millimetres ?? [], (at) => at / 1000);
-  [section.first, section.left, section.right, section.leftPose, section.rightPose] = await Promise.all(
-      ["first", "left", "right", "left_pose", "right_pose"].map(integers));
+  const { chainage, ...columns } = await readIntegers("section", ["chainage", "first", "left", "right", "left_pose", "right_pose"]);
+  Object.assign(section, columns, { chainage: Float64Array.from(chainage ?? [], (at) => at / 1000) });
   [section.whole, section.stops, section.cells, section.unknown] = await Promise.all(
       ["whole", "stops", "cells", "unknown"].map((name) => columnBytes(`section.${name}`)));
 }
@@ -63,15 +60,13 @@ function colourAt(chainage) {
   return colours[length > 0 ? clamp(Math.floor(chainage / length * colours.length), 0, colours.length - 1) : 0];
 }
 
-/** Pixels of the picture from places of the section, and back. */
-function sectionScale() {
-  const { left, top, scale } = byId("section-svg").dataset, { columns, rows, cell, j_from, k_from } = section.facts;
-  const x0 = +left, y0 = +top, s = +scale;
-  return {
-    x: (y) => x0 + (j_from + columns - y / cell) * s, y: (z) => y0 + (k_from + rows - z / cell) * s,
-    left: x0, right: x0 + columns * s, top: y0, bottom: y0 + rows * s,
-    place: (x, y) => [(j_from + columns - (x - x0) / s) * cell, (k_from + rows - (y - y0) / s) * cell],
-  };
+/** The picture as a chart of y, which grows to the left, and z. */
+function sectionChart() {
+  const svg = byId("section-svg"), { columns, rows, cell, j_from, k_from } = section.facts, { width, height } = svg.viewBox.baseVal;
+  const [left, top, scale] = ["left", "top", "scale"].map((name) => +svg.dataset[name]);
+  return Object.assign(new Chart(height - top - rows * scale), {
+    width, height, left, top, right: width - left - columns * scale,
+    from: (j_from + columns) * cell, to: j_from * cell, low: k_from * cell, high: (k_from + rows) * cell });
 }
 
 function stretchCells(index) {
@@ -121,11 +116,11 @@ function drawLoads(index) {
 
 /** The deepest places of the intrusions of one stretch, with how deep they are. */
 function stretchMarks(index) {
-  const scale = sectionScale(), { cell } = section.facts;
+  const chart = sectionChart(), { cell } = section.facts;
   return make("g", { id: "section-stretch-marks" }, stopsOfStretch(index).flatMap(({ intrusions }) => intrusions).map((intrusion) => {
-    const x = scale.x((intrusion.cell[0] + 0.5) * cell), y = scale.y((intrusion.cell[1] + 0.5) * cell);
+    const x = chart.x((intrusion.cell[0] + 0.5) * cell), y = chart.y((intrusion.cell[1] + 0.5) * cell);
     const label = `${intrusion.depth.toFixed(2)} ${unitSymbol}${intrusion.obstacle ? `, ${intrusion.obstacle}` : ""}`;
-    const right = x < (scale.left + scale.right) / 2;
+    const right = x < chart.left + chart.wide / 2;
     return [make("circle", { cx: x, cy: y, r: 4, fill: "#fff", stroke: "#111827", "stroke-width": 2 }),
             make("text", { x: x + (right ? 9 : -9), y: y - 7, class: `strong halo ${right ? "" : "end"}` }, label)];
   }));
@@ -176,7 +171,7 @@ function roomAt(index, band) {
   const left = length(section.left[at]), right = length(section.right[at]);
   const least = Math.min(left ?? (j_from + columns) * cell, right ?? -j_from * cell);
   return { left, right, width: left === null && right === null ? null : Math.max(0, 2 * least - 2 * kept),
-           leftPose: section.leftPose[at], rightPose: section.rightPose[at] };
+           leftPose: section.left_pose[at], rightPose: section.right_pose[at] };
 }
 
 const poseWords = (pose) => `pose ${count(pose)} at chainage ${station(section.chainage[pose])}`;
@@ -196,10 +191,10 @@ function roomWords(index, band) {
 /** The line in the picture with the widths to both sides at the cursor's height. */
 function drawRoom() {
   byId("section-room")?.remove();
-  const scale = sectionScale(), { z_from, z_to } = section.facts.bands[section.band];
+  const chart = sectionChart(), { z_from, z_to } = section.facts.bands[section.band];
   const { left, right } = roomAt(section.shown ?? null, section.band);
-  const y = scale.y((z_from + z_to) / 2), x1 = left === null ? scale.left : scale.x(left);
-  const x2 = right === null ? scale.right : scale.x(-right), x0 = scale.x(0);
+  const y = chart.y((z_from + z_to) / 2), x1 = left === null ? chart.left : chart.x(left);
+  const x2 = right === null ? chart.left + chart.wide : chart.x(-right), x0 = chart.x(0);
   const words = (x, room) => make("text", { x, y: y - 6, class: "middle strong halo" },
                                   room === null ? "open" : `${room.toFixed(2)} ${unitSymbol}`);
   const end = (x) => make("line", { x1: x, x2: x, y1: y - 6, y2: y + 6, stroke: "#00735c", "stroke-width": 2.5 });
@@ -221,9 +216,7 @@ function firstPoseAt(i) {
 
 /** What is in the cell under the pointer, and the widths at its height. */
 function readPicture(event) {
-  const svg = byId("section-svg"), box = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
-  const [y, z] = sectionScale().place((event.clientX - box.left) * view.width / box.width,
-                                      (event.clientY - box.top) * view.height / box.height);
+  const [y, z] = sectionChart().at(byId("section-svg"), event);
   const { cell, j_from, k_from, columns, rows, bands } = section.facts;
   const column = Math.floor(y / cell) - j_from, row = Math.floor(z / cell) - k_from;
   if (column < 0 || row < 0 || column >= columns || row >= rows) return;

@@ -184,35 +184,14 @@ function notScannedLegend() {
       "passed through. The curve knows nothing of them.")];
 }
 
-/** The mask of the unseen cubes, hatched, so that it differs from points without its colour. */
+/** The unseen cubes, hatched, so that they differ from points without their colour. */
 function paintUnseen(context, painter, unitSize) {
   if (!page.unseen) return;
-  const { width, height } = painter, { xyz, count: n } = page.unseen;
+  const period = Math.round(7 * unitSize), [r, g, b] = kUnseenRgb;
   const half = Math.max(1, Math.round(0.5 * seenFacts().cube * painter.perMetre));
-  const mask = new Uint8Array(width * height);
-  for (let i = 0; i < n; ++i) {
-    const at = painter.project([xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]]);
-    if (!at) continue;
-    const x = at[0] | 0, y = at[1] | 0;
-    for (let qy = Math.max(0, y - half); qy <= Math.min(height - 1, y + half); ++qy) {
-      const from = Math.max(0, x - half), to = Math.min(width, x + half + 1);
-      if (from < to) mask.fill(1, qy * width + from, qy * width + to);
-    }
-  }
-  const image = new ImageData(width, height), period = Math.round(7 * unitSize), [r, g, b] = kUnseenRgb;
-  for (let y = 0; y < height; ++y) {
-    for (let x = 0; x < width; ++x) {
-      const at = y * width + x;
-      if (!mask[at]) continue;
-      const edge = x === 0 || y === 0 || x === width - 1 || y === height - 1 || !mask[at - 1] ||
-          !mask[at + 1] || !mask[at - width] || !mask[at + width];
-      const line = (x + y) % period < 0.35 * period;
-      image.data.set([r, g, b, edge ? 255 : line ? 200 : 60], 4 * at);
-    }
-  }
-  const holder = new OffscreenCanvas(width, height);
-  holder.getContext("2d").putImageData(image, 0, 0);
-  context.drawImage(holder, 0, 0);
+  const square = Array.from({ length: 2 * half + 1 }, (_, i) => [i - half, half]);
+  drawMask(context, maskOf(painter, placesOf(page.unseen), square), painter.width, painter.height,
+           (x, y, isEdge) => [r, g, b, isEdge ? 255 : (x + y) % period < 0.35 * period ? 200 : 60]);
 }
 
 /** Squares with the groups' numbers, for plan and 3-D view. */
