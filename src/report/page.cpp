@@ -1,6 +1,5 @@
 #include "report/page.hpp"
 
-#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -45,37 +44,6 @@ struct Placed {
   }
 };
 
-/// The least and the greatest integers of some points on each axis.
-struct Extent {
-  std::int32_t lo[3], hi[3];
-
-  void extend(const Extent& other) {
-    for (int k = 0; k < 3; ++k) {
-      lo[k] = std::min(lo[k], other.lo[k]);
-      hi[k] = std::max(hi[k], other.hi[k]);
-    }
-  }
-};
-
-/// points: at least one.
-Extent extent_of(const std::vector<PagePoint>& points) {
-  const auto of = [&](std::size_t i) {
-    const std::int32_t* const q = points[i].q;
-    return Extent{{q[0], q[1], q[2]}, {q[0], q[1], q[2]}};
-  };
-  using Range = tbb::blocked_range<std::size_t>;
-  return tbb::parallel_reduce(
-      Range(0, points.size(), 1 << 14), of(0),
-      [&](const Range& range, Extent extent) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) extent.extend(of(i));
-        return extent;
-      },
-      [](Extent a, const Extent& b) {
-        a.extend(b);
-        return a;
-      });
-}
-
 }  // namespace
 
 PageLattice lattice_for(const Box& box, double finest) {
@@ -100,11 +68,13 @@ PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t t
 
 void sort_along_curve(std::vector<PagePoint>& points) {
   if (points.empty()) return;
-  const Extent whole = extent_of(points);
-  const std::int32_t* const lo = whole.lo;
+  std::int32_t lo[3];
   std::int64_t extent = 1;
   for (int k = 0; k < 3; ++k) {
-    extent = std::max<std::int64_t>(extent, std::int64_t{whole.hi[k]} - lo[k]);
+    const auto coordinate = [k](const PagePoint& point) { return point.q[k]; };
+    const auto [least, most] = std::ranges::minmax_element(points, {}, coordinate);
+    lo[k] = least->q[k];
+    extent = std::max<std::int64_t>(extent, std::int64_t{most->q[k]} - lo[k]);
   }
   int shift = 0;
   while (extent >> shift >= std::int64_t{1} << kCurveBits) ++shift;

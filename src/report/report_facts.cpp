@@ -45,12 +45,6 @@ std::uint64_t surface_triangles(const Model& model) {
   return static_cast<std::uint64_t>(std::ranges::count(model.solid_of, kNoSolid));
 }
 
-std::uint64_t surface_triangles(std::span<const DrawnBody> bodies) {
-  std::uint64_t count = 0;
-  for (const DrawnBody& body : bodies) count += surface_triangles(body.model);
-  return count;
-}
-
 Json json_of(const DrawnBody& body) {
   return {{"name", body.name},
           {"points", body.model.vertices.size()},
@@ -67,22 +61,19 @@ void add_body(Json& json, const ReportFacts& facts, const std::optional<std::uin
   if (body) json["body"] = facts.bodies[*body].name;
 }
 
-/// The spacing of a mesh that was searched as points; nothing for other models.
-std::optional<double> spacing_of(const ResultHeader& header) {
-  if (!(header.notes.model_spacing > 0)) return std::nullopt;
-  return header.notes.model_spacing;
-}
-
 Json json_of_inputs(const ReportFacts& facts) {
   const ReportOptions& options = facts.options;
   const ResultHeader& header = facts.result.reader().header();
+  const double spacing = header.notes.model_spacing;
+  std::uint64_t surface = 0;
+  for (const DrawnBody& body : facts.bodies) surface += surface_triangles(body.model);
   Json model{{"name", options.model_name},
              {"points", header.model_points},
              {"hash", hash_text(header.model_hash)},
              {"triangles", header.model_triangles},
              {"solids", header.model_solids},
-             {"surface_triangles", surface_triangles(facts.bodies)},
-             {"spacing", or_null(spacing_of(header))},
+             {"surface_triangles", surface},
+             {"spacing", spacing > 0 ? Json(spacing) : Json()},  // of a mesh searched as points
              {"box", box_around(facts.bodies)}};
   if (const ModelAxes axes = header.notes.model_axes; axes.need_turn()) {
     model["axes"] = Json::array({name_of(axes.forward), name_of(axes.up)});
@@ -299,15 +290,14 @@ Json json_of_ledger(const ReportFacts& facts) {
 
 Json json_of_least(const ReportFacts& facts) {
   if (!facts.least) return {};
-  const LeastDistance& least = *facts.least;
-  const FoundPlace& place = least.place;
-  Json out{{"distance", place.distance},       {"pose", place.pose}, {"chainage", least.chainage},
-           {"source", place.source},           {"point", place.xyz}, {"side", name_of(least.side)},
-           {"lateral", or_null(least.lateral)}};
-  add_body(out, facts, least.body);
-  out["height"] = or_null(least.height);
-  out["of"] = least.of;
-  out["point_class"] = class_words(place.point_class.value_or(0));
+  using Least = LeastDistance;
+  const Least& least = *facts.least;
+  Json out = members_json<&Least::distance, &Least::pose, &Least::chainage, &Least::source>(least);
+  out["point"] = least.xyz;
+  out.update(members_json<&Least::side, &Least::lateral>(least));
+  add_body(out, facts, least.body_number);
+  out.update(members_json<&Least::height, &Least::of>(least));
+  out["point_class"] = class_words(least.point_class.value_or(0));
   return out;
 }
 
@@ -316,7 +306,7 @@ Json json_of_inside(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   if (header.model_solids == 0 || !(std::max(header.clearance, header.profile) > 0)) return {};
   return {{"points", header.clearance > 0 ? Json(facts.points.summary.inside_points) : Json()},
-          {"depth", facts.least ? std::max(0.0, -facts.least->place.distance) : 0.0}};
+          {"depth", facts.least ? std::max(0.0, -facts.least->distance) : 0.0}};
 }
 
 Json json_of(const PageLattice& lattice) {

@@ -19,15 +19,14 @@
 namespace clearway {
 
 /// The least distance that the result knows, and where it is.
-struct LeastDistance {
-  FoundPlace place;
+struct LeastDistance : FoundPlace {
   const char* of = nullptr;  ///< "clearance" or "profile", whichever it is from
   double chainage = 0;
   /// The side on which the point lies at the pose, as for conflicts.
   Side side = Side::kUnknown;
   std::optional<double> lateral = {}, height = {};
-  /// The body of a vehicle that is so near.
-  std::optional<std::uint32_t> body = {};
+  /// The number of the body of a vehicle that is so near.
+  std::optional<std::uint32_t> body_number = {};
 };
 
 /// Everything that the page says in words and numbers.

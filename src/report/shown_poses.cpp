@@ -74,25 +74,19 @@ double origin_on_page(const PoseLabel<double>& label, const std::vector<double>&
 }
 
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
-                                        const std::vector<Conflict>& conflicts, std::size_t most) {
-  std::vector<std::uint32_t> shown;
-  if (poses == 0) return shown;
+                                        std::vector<std::uint32_t> named, std::size_t most) {
+  if (poses == 0) return {};
+  std::vector<std::uint32_t> shown = std::move(named);
   const std::uint64_t stretches = std::min<std::uint64_t>(poses, most);
   for (std::uint64_t k = 0; k < stretches; ++k) {
-    const std::uint64_t first = k * poses / stretches, end = (k + 1) * poses / stretches;
-    std::uint64_t best = first;
-    for (std::uint64_t i = first + 1; i < end && !profile.distance.empty(); ++i) {
-      if (profile.distance[i] < profile.distance[best]) best = i;
+    std::uint64_t best = k * poses / stretches;
+    for (std::uint64_t i = best + 1; i < (k + 1) * poses / stretches; ++i) {
+      if (!profile.distance.empty() && profile.distance[i] < profile.distance[best]) best = i;
     }
     shown.push_back(static_cast<std::uint32_t>(best));
   }
   shown.push_back(0);
   shown.push_back(static_cast<std::uint32_t>(poses - 1));
-  for (const Conflict& conflict : conflicts) {
-    shown.push_back(conflict.first_pose);
-    shown.push_back(conflict.last_pose);
-    if (conflict.nearest_pose) shown.push_back(*conflict.nearest_pose);
-  }
   std::ranges::sort(shown);
   shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
   return shown;

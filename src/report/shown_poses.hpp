@@ -18,10 +18,9 @@ inline constexpr std::size_t kMostShownPoses = 20'000;
 
 /// The indices of the poses for the page, ascending. All poses, or for each of `most` stretches of
 /// the trajectory the pose that is nearest to the environment (without a profile, the first one);
-/// in any case the first pose, the last one, and those that conflicts name.
+/// in any case the first pose, the last one, and `named` ones.
 std::vector<std::uint32_t> choose_poses(std::uint64_t poses, const Profile& profile,
-                                        const std::vector<Conflict>& conflicts,
-                                        std::size_t most = kMostShownPoses);
+                                        std::vector<std::uint32_t> named, std::size_t most);
 
 /// Appends the columns pose.*: index, place, rotation, chainage, and where known distance, point
 /// and labels.

@@ -94,21 +94,20 @@ std::string title_of(const ReportOptions& options) {
 /// Removes all but the largest of the listed groups, of which the page lists no more.
 void keep_largest(std::size_t most, UnseenGroups& unseen) {
   if (unseen.listed.size() <= most) return;
-  std::vector<std::uint32_t> order;
-  for (std::uint32_t k = 0; k < unseen.listed.size(); ++k) order.push_back(k);
-  std::ranges::stable_sort(order, [&](std::uint32_t a, std::uint32_t b) {
-    return unseen.listed[a].cubes > unseen.listed[b].cubes;
-  });
-  std::vector<bool> kept(order.size());
-  for (std::size_t k = 0; k < most; ++k) kept[order[k]] = true;
+  std::vector<std::uint64_t> end, order;  // of the middles of each group; groups by size
+  for (const UnseenGroup& group : unseen.listed) {
+    order.push_back(end.size());
+    end.push_back((end.empty() ? 0 : end.back()) + group.cubes);
+  }
+  std::ranges::stable_sort(order, std::greater{}, [&](auto k) { return unseen.listed[k].cubes; });
+  order.resize(most);
+  std::ranges::sort(order);
   std::vector<UnseenGroup> listed;
   std::vector<Vec3> middles;
-  auto next = unseen.middles.begin();
-  for (std::size_t k = 0; k < unseen.listed.size(); ++k) {
-    const auto end = next + static_cast<std::ptrdiff_t>(unseen.listed[k].cubes);
-    if (kept[k]) middles.insert(middles.end(), next, end);
-    if (kept[k]) listed.push_back(unseen.listed[k]);
-    next = end;
+  for (const std::uint64_t k : order) {
+    listed.push_back(unseen.listed[k]);
+    const auto last = unseen.middles.begin() + static_cast<std::ptrdiff_t>(end[k]);
+    middles.insert(middles.end(), last - static_cast<std::ptrdiff_t>(listed.back().cubes), last);
   }
   unseen.listed = std::move(listed);
   unseen.middles = std::move(middles);
@@ -230,20 +229,19 @@ class Report {
 
   void find_stations() {
     facts_.every = every();
-    StationOptions how;
-    how.every = facts_.every;
-    how.chainage_start = how_.chainage_start;
-    how.forward = how_.forward;
-    how.up = how_.up;
-    how.bodies = how_.bodies;
-    how.station = how_.station;
-    how.threads = how_.threads;
-    how.progress = how_.progress;
-    how.stop = how_.stop;
-    facts_.stations = station_table(facts_.result, poses_, how);
+    facts_.stations = station_table(facts_.result, poses_,
+                                    {.every = facts_.every,
+                                     .chainage_start = how_.chainage_start,
+                                     .forward = how_.forward,
+                                     .up = how_.up,
+                                     .bodies = how_.bodies,
+                                     .station = how_.station,
+                                     .threads = how_.threads,
+                                     .progress = how_.progress,
+                                     .stop = how_.stop});
     if (facts_.stations->rows.size() <= kMostStationRowsOfPage) return;
     throw UsageError("a table of " + counted(facts_.stations->rows.size(), "stretch", "stretches") +
-                     " of " + format_brief(how.every) +
+                     " of " + format_brief(facts_.every) +
                      " m is too long for a page; expected at least " +
                      format_brief(path_length(poses_) / kMostStationRowsOfPage) + " m");
   }
@@ -270,11 +268,11 @@ class Report {
     const auto& nearest = has_clearance ? answer.least_clearance : answer.least_profile;
     if (!nearest) return;
     LeastDistance& least = facts_.least.emplace();
-    least.place = *nearest;
+    static_cast<FoundPlace&>(least) = *nearest;
     least.of = has_clearance ? "clearance" : "profile";
     least.chainage = how_.chainage_start + chainage_[nearest->pose];
-    if (!has_clearance && is_vehicle()) least.body = nearest_body(*nearest);
-    if (has_clearance && !answer.bodies.empty()) least.body = nearest->body;
+    if (!has_clearance && is_vehicle()) least.body_number = nearest_body(*nearest);
+    if (has_clearance && !answer.bodies.empty()) least.body_number = nearest->body;
     place(least);
   }
 
@@ -296,10 +294,10 @@ class Report {
 
   /// Finds where the nearest point lies, seen from the model or from its body.
   void place(LeastDistance& least) const {
-    const DrawnBody& body = facts_.bodies[least.body.value_or(0)];
-    const Pose* pose = body.pose_at(least.place.pose);
+    const DrawnBody& body = facts_.bodies[least.body_number.value_or(0)];
+    const Pose* pose = body.pose_at(least.pose);
     if (pose == nullptr) return;
-    const Vec3 there = ahead_left_up(least.place.xyz, *pose, how_.forward, how_.up);
+    const Vec3 there = ahead_left_up(least.xyz, *pose, how_.forward, how_.up);
     if (!std::isfinite(there.y) || !std::isfinite(there.z)) return;
     least.side = side_of({there, there}, body.box, how_.forward, how_.up);
     least.lateral = there.y;
@@ -309,12 +307,15 @@ class Report {
   std::vector<PageColumn> make_columns(const Conflicts& conflicts) {
     std::vector<PageColumn> columns;
     progress_.begin("page", 0, "");
-    std::vector<std::uint32_t> shown = choose_poses(poses_.size(), profile_, conflicts.listed,
-                                                    most_shown_poses(facts_.bodies.size()));
-    if (facts_.least) shown.push_back(facts_.least->place.pose);
-    for (const UnseenGroup& group : facts_.unseen.listed) shown.push_back(group.first_pose);
-    std::ranges::sort(shown);
-    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    std::vector<std::uint32_t> named;
+    for (const Conflict& conflict : conflicts.listed) {
+      named.insert(named.end(), {conflict.first_pose, conflict.last_pose,
+                                 conflict.nearest_pose.value_or(conflict.last_pose)});
+    }
+    for (const UnseenGroup& group : facts_.unseen.listed) named.push_back(group.first_pose);
+    if (facts_.least) named.push_back(facts_.least->pose);
+    const std::vector<std::uint32_t> shown = choose_poses(poses_.size(), profile_, std::move(named),
+                                                          most_shown_poses(facts_.bodies.size()));
     facts_.shown_poses = shown.size();
     const Box box = box_around(facts_.bodies);
     facts_.model_lattice = lattice_for(box, path_.half_diagonal() / 0x1p15);
