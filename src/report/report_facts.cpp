@@ -14,6 +14,7 @@
 #include "core/describe/conflict.hpp"
 #include "core/describe/labels.hpp"
 #include "core/describe/query.hpp"
+#include "core/describe/reports.hpp"
 #include "core/describe/seen.hpp"
 #include "core/describe/stations.hpp"
 #include "core/query/ignored_points.hpp"
@@ -22,6 +23,7 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/conflicts/ledger_words.hpp"
@@ -30,7 +32,6 @@
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/answer_words.hpp"
-#include "report/fact_json.hpp"
 #include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
@@ -162,10 +163,6 @@ Json json_of_classes(const ReportFacts& facts) {
   return out;
 }
 
-Json json_of(const Overthrow& body) {
-  return members_json<&Overthrow::end, &Overthrow::middle>(body);
-}
-
 /// Adds the value of a column, if the row has one or the column is never left out.
 template <typename Column, typename Row>
 void add_finding(Json& json, const Column& column, const Row& row) {
@@ -178,9 +175,7 @@ void add_finding(Json& json, const Column& column, const Row& row) {
     json[key] = value ? Json(value->distance) : Json();
     json[key + "_source"] = value ? Json(value->source) : Json();
     json[key + "_pose"] = value ? Json(value->pose) : Json();
-  } else if constexpr (std::is_same_v<Value, std::vector<Overthrow>>) {
-    json[column.key] = list_of(value, [](const Overthrow& body) { return json_of(body); });
-  } else if (Json fact = fact_json(value); !fact.is_null() || !column.use.is_left_out) {
+  } else if (Json fact = json_of_fact(value); !fact.is_null() || !column.use.is_left_out) {
     json[column.key] = std::move(fact);
   }
 }

@@ -11,10 +11,10 @@
 #include "core/query/point_classes.hpp"
 #include "core/section/section_intrusions.hpp"
 #include "core/util/format.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/store/store_reader.hpp"
-#include "report/fact_json.hpp"
 #include "report/report_facts.hpp"
 #include "report/section_words.hpp"
 #include "search/section.hpp"
@@ -367,7 +367,7 @@ Json SectionView::facts() const {
     return list_of(list, [&](const SectionBand& band) {
       using Band = SectionBand;
       Json out = members_json<&Band::z_from, &Band::z_to, &Band::left, &Band::right>(band);
-      out["symmetric_width"] = fact_json(symmetric_width(data, band));
+      out["symmetric_width"] = json_of_fact(symmetric_width(data, band));
       return out;
     });
   };

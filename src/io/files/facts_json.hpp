@@ -54,6 +54,23 @@ void add_facts(Json& out, const Report& report, const std::tuple<Facts...>& fact
   });
 }
 
+/// An object with these members of a struct, or functions of it without arguments, each under its
+/// own name.
+template <auto... kMembers, typename Row>
+Json members_json(const Row& row) {
+  Json out = Json::object();
+  add_facts(out, row, std::tuple{fact<kMembers>("")...});
+  return out;
+}
+
+/// The items as a list of what make(item) gives.
+template <typename Items, typename Make>
+Json list_of(const Items& items, const Make& make) {
+  Json out = Json::array();
+  for (const auto& item : items) out.push_back(make(item));
+  return out;
+}
+
 /// Adds all facts of a report to an object.
 template <typename Report>
 void add_facts(Json& out, const Report& report) {
