@@ -1,7 +1,5 @@
 #include "findings/across_body.hpp"
 
-#include <tbb/spin_mutex.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,12 +7,12 @@
 #include <limits>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/geometry/axes.hpp"
 #include "core/geometry/inside.hpp"
 #include "core/geometry/point_box.hpp"
-#include "core/util/tsan_annotations.hpp"
-#include "io/files/parallel_loop.hpp"
+#include "findings/row_pieces.hpp"
 
 namespace clearway {
 namespace {
@@ -65,49 +63,15 @@ double squared_distance(const Vec3& a, const Vec3& b, const Box& box) {
   return least;
 }
 
-/// Some points of one part, with a box around them.
+/// A node of a tree of points, as a box around its middle.
 struct Bunch {
-  std::span<Vec3> places;
-  Vec3 centre{}, half{};
-  std::uint32_t halves = 0;  ///< the index of its first half, which the other follows; 0: not cut
+  Vec3 centre, half;
 
-  explicit Bunch(std::span<Vec3> of) : places(of) {
-    const Box box = box_of(places);
+  Bunch(const PointBlocks& points, std::uint32_t node) {
+    const Box box = points.box(node);
     centre = box.centre();
     half = 0.5 * box.size();
   }
-};
-
-/// The points of one part in a cell, cut into ever smaller bunches where that is asked for.
-class Bunches {
- public:
-  /// A bunch of so few points is not cut.
-  static constexpr std::size_t kFew = 8;
-
-  explicit Bunches(std::span<Vec3> places) { bunches_.emplace_back(places); }
-
-  /// The whole is at index 0.
-  const Bunch& operator[](std::uint32_t i) const { return bunches_[i]; }
-  bool can_cut(std::uint32_t i) const { return bunches_[i].places.size() > kFew; }
-
-  /// The index of the first half of a bunch that can be cut.
-  std::uint32_t halves(std::uint32_t i) {
-    if (bunches_[i].halves != 0) return bunches_[i].halves;
-    const std::span<Vec3> places = bunches_[i].places;
-    const Vec3& half = bunches_[i].half;
-    const int axis = half.x >= half.y && half.x >= half.z ? 0 : half.y >= half.z ? 1 : 2;
-    const std::size_t middle = places.size() / 2;
-    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle),
-                     places.end(),
-                     [axis](const Vec3& a, const Vec3& b) { return a[axis] < b[axis]; });
-    const auto first = static_cast<std::uint32_t>(bunches_.size());
-    bunches_.emplace_back(places.first(middle));
-    bunches_.emplace_back(places.subspan(middle));
-    return bunches_[i].halves = first;
-  }
-
- private:
-  std::vector<Bunch> bunches_;
 };
 
 /// A box of the body's frame that surely holds all of a bunch.
@@ -123,14 +87,6 @@ Box seen_box(const PullBack& back, const Bunch& bunch) {
     out.hi[k] = centre[k] + half;
   }
   return out;
-}
-
-/// False where a side is not a number.
-bool overlap(const Box& a, const Box& b) {
-  for (int k = 0; k < 3; ++k) {
-    if (!(a.lo[k] <= b.hi[k] && b.lo[k] <= a.hi[k])) return false;
-  }
-  return true;
 }
 
 /// Keeps the greater of two numbers, of which `greatest` is none below 0; infinity for NaN.
@@ -273,17 +229,17 @@ class Viewer {
                 (from_floor.hi.z - from_floor.lo.z) / 4};
   }
 
-  /// Adds where points lie at the poses of a part's range. Points that surely lie within what is
-  /// found already are not looked at one by one.
-  void add(Bunches& bunches, const PartAcross& part, AcrossBody& found) const {
-    const bool ways = ways_ && part.first_pose < part.last_pose;
-    const std::size_t first = index_of(part.first_pose);
-    const std::size_t end = index_of(std::uint64_t{part.last_pose} + 1);
+  /// Adds where the points of a node lie at the poses of a conflict's range. Points that surely lie
+  /// within what is found already are not looked at one by one.
+  void add(const PointsBeside& of, std::uint32_t node, AcrossBody& found) const {
+    const bool ways = ways_ && of.first_pose < of.last_pose;
+    const std::size_t first = index_of(of.first_pose);
+    const std::size_t end = index_of(std::uint64_t{of.last_pose} + 1);
     // A way is numbered by the pose at which it begins.
     const Moments moments{first, ways && end > first ? end - 1 : end, ways};
     const std::size_t level = motion_.last_level(), size = BodyMotion::size_of(level);
     for (std::size_t i = first / size; i * size < moments.end; ++i) {
-      add_range(bunches, 0, {level, i}, moments, found);
+      add_range(of.points, node, {level, i}, moments, found);
     }
   }
 
@@ -306,36 +262,39 @@ class Viewer {
     return body_.path_pose.empty() || body_.path_pose[i] + 1 == body_.path_pose[i + 1];
   }
 
-  /// Adds a bunch at those of the moments that lie in a range of the body's motion. Of bunch and
-  /// range, the one that makes the place of the points less certain is cut first.
-  void add_range(Bunches& bunches, std::uint32_t b, const BodyMotion::Place& at,
+  /// Adds a node at those of the moments that lie in a range of the body's motion. Of node and
+  /// range, the one that makes the place of the points less certain is divided first.
+  void add_range(const PointBlocks& points, std::uint32_t node, const BodyMotion::Place& at,
                  const Moments& moments, AcrossBody& found) const {
     const std::size_t first = std::max(at.first(), moments.first);
     const std::size_t end = std::min(at.end(), moments.end);
     if (first >= end) return;
-    const Bunch& bunch = bunches[b];
+    const Bunch bunch(points, node);
     const PullBack middle(motion_.middle(at));
     const double distance = length(bunch.centre - middle.position) + length(bunch.half);
     const Vec3 moves = motion_.most_moves(at, distance);
     if (!may_add_in(seen_box(middle, bunch), moves, motion_.most_turn(at), moments, found)) return;
-    if (at.level > 0 && !(bunches.can_cut(b) && longest(moves) < longest(bunch.half))) {
-      add_range(bunches, b, at.half(0), moments, found);
-      add_range(bunches, b, at.half(1), moments, found);
-    } else if (bunches.can_cut(b)) {
-      const std::uint32_t halves = bunches.halves(b);
-      add_range(bunches, halves, at, moments, found);
-      add_range(bunches, halves + 1, at, moments, found);
+    const bool is_block = points.is_block(node);
+    if (at.level > 0 && (is_block || longest(moves) >= longest(bunch.half))) {
+      add_range(points, node, at.half(0), moments, found);
+      add_range(points, node, at.half(1), moments, found);
+    } else if (!is_block) {
+      add_range(points, 2 * node + 1, at, moments, found);
+      add_range(points, 2 * node + 2, at, moments, found);
     } else {
-      for (std::size_t k = first; k < end; ++k) add_moment(bunch, k, moments, found);
+      const PointBlocks::Node& block = points.node(node);
+      std::vector<Vec3> places;
+      for (std::uint32_t p = block.begin; p < block.end; ++p) places.push_back(points.place(p));
+      for (std::size_t k = first; k < end; ++k) add_moment(bunch, places, k, moments, found);
     }
   }
 
   static double longest(const Vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-  void add_moment(const Bunch& bunch, std::size_t k, const Moments& moments,
-                  AcrossBody& found) const {
-    if (!moments.are_ways) return add_pose(bunch.places, body_.poses[k], found);
-    if (is_way(k)) add_way(bunch, body_.poses[k], body_.poses[k + 1], found);
+  void add_moment(const Bunch& bunch, std::span<const Vec3> places, std::size_t k,
+                  const Moments& moments, AcrossBody& found) const {
+    if (!moments.are_ways) return add_pose(places, body_.poses[k], found);
+    if (is_way(k)) add_way(bunch, places, body_.poses[k], body_.poses[k + 1], found);
   }
 
   /// Whether places in a box at one of some poses, or that move from there as far as `moves`, may
@@ -360,7 +319,8 @@ class Viewer {
     }
   }
 
-  void add_way(const Bunch& bunch, const Pose& from, const Pose& to, AcrossBody& found) const {
+  void add_way(const Bunch& bunch, std::span<const Vec3> places, const Pose& from, const Pose& to,
+               AcrossBody& found) const {
     const PullBack first(from), second(to);
     const Box a = seen_box(first, bunch), b = seen_box(second, bunch);
     Box both = a;
@@ -370,7 +330,7 @@ class Viewer {
     // After half a turn a point may lie anywhere, and its places are looked at one by one.
     const double most = turn.beyond(length(both.size()));
     if (std::isfinite(most) && !may_add(both.grown(most), found)) return;
-    for (const Vec3& place : bunch.places) {
+    for (const Vec3& place : places) {
       const Vec3 x = first.apply(place), y = second.apply(place);
       if (!is_at_floor(x) && !is_at_floor(y)) continue;
       const double beyond = turn.beyond(length(y - x)), reach = radius_ + beyond;
@@ -384,7 +344,7 @@ class Viewer {
 
   /// Whether places in a box may change what is found.
   bool may_add(const Box& seen, const AcrossBody& found) const {
-    if (!overlap(seen, grown_)) return false;
+    if (!seen.meets(grown_)) return false;
     if (body_.floor && seen.hi.z < *body_.floor) return false;
     const Box across = turned(seen, axes_.forward, axes_.up);
     if (!found.in_middle && across.lo.y < middle_.y + quarter_.y &&
@@ -417,19 +377,6 @@ class Viewer {
   bool ways_;
 };
 
-/// The points of a cell that belong to parts, with the part of each, part by part.
-std::vector<std::pair<std::uint32_t, Vec3>> points_of_parts(
-    std::span<const GroupedPoint> points, std::span<const std::uint32_t> part_of_row,
-    const Quantisation& quantisation) {
-  std::vector<std::pair<std::uint32_t, Vec3>> out;
-  for (const GroupedPoint& p : points) {
-    const std::uint32_t part = part_of_row[p.row];
-    if (part != 0) out.emplace_back(part - 1, position(quantisation, p.q[0], p.q[1], p.q[2]));
-  }
-  std::ranges::sort(out, {}, &std::pair<std::uint32_t, Vec3>::first);
-  return out;
-}
-
 }  // namespace
 
 void AcrossBody::add(const AcrossBody& other) {
@@ -450,47 +397,36 @@ Box BodiesAcross::box_from_floor(std::uint32_t body) const {
   return turned(box, axes.forward, axes.up);
 }
 
-void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
-                        std::span<const std::uint32_t> part_of_row,
-                        const Quantisation& quantisation, const BodiesAcross& how,
-                        std::vector<PartAcross>& parts, Progress& progress) {
-  using Range = tbb::blocked_range<std::uint32_t>;
+std::vector<AcrossBody> find_across_bodies(const BodiesAcross& how,
+                                           std::span<const PointsBeside> conflicts,
+                                           Progress& progress) {
   std::vector<Viewer> viewers;
   for (std::uint32_t b = 0; b < how.bodies.size(); ++b) viewers.emplace_back(how, b);
-  std::array<tbb::spin_mutex, 64> locks;
-  const auto exchange = [&](std::uint32_t number, AcrossBody& found) {
-    tbb::spin_mutex& lock = locks[number % locks.size()];
-    const tbb::spin_mutex::scoped_lock held(lock);
-    acquire(&lock);
-    parts[number].found.add(found);
-    found = parts[number].found;
-    release(&lock);
+  std::vector<AcrossBody> out(conflicts.size());
+  SharedLocks locks;
+  // Takes over what others have found of a conflict, and gives them what was found here.
+  const auto exchange = [&](std::size_t i, AcrossBody& found) {
+    locks.hold(i, [&] {
+      out[i].add(found);
+      found = out[i];
+    });
   };
-  const auto add = [&](std::uint32_t number, std::span<Vec3> places) {
-    const PartAcross part{parts[number].body, parts[number].first_pose, parts[number].last_pose};
-    AcrossBody found;
-    exchange(number, found);
-    Bunches bunches(places);
-    viewers[part.body].add(bunches, part, found);
-    exchange(number, found);
-  };
-  for_each_parallel(Range(0, grid.cells(), 16), [&](const Range& range) {
-    std::vector<Vec3> places;
-    for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
+  for_each_parallel(conflicts.size(), [&](std::size_t i) {
+    const PointBlocks& points = conflicts[i].points;
+    constexpr std::uint32_t kPointsOfTask = 1024;
+    // The nodes of a level follow one another, and the tree is balanced.
+    std::uint32_t first = 0;
+    while (!points.is_block(first) && points.node(first).end > kPointsOfTask) first = 2 * first + 1;
+    for_each_parallel(first + 1, [&](std::uint32_t k) {
       if (progress.stop_requested()) return;
-      if (PointGroups::is_small(groups.of_cell[cell])) continue;
-      const auto points = points_of_parts(grid.points(cell), part_of_row, quantisation);
-      for (std::size_t i = 0; i < points.size();) {
-        const std::uint32_t number = points[i].first;
-        places.clear();
-        for (; i < points.size() && points[i].first == number; ++i) {
-          places.push_back(points[i].second);
-        }
-        add(number, places);
-      }
-    }
+      AcrossBody found;
+      exchange(i, found);
+      viewers[conflicts[i].body].add(conflicts[i], first + k, found);
+      exchange(i, found);
+    });
   });
   throw_if_stopped(progress);
+  return out;
 }
 
 void set_trims(const AcrossBody& found, const Box& body, const Box& whole, double radius,

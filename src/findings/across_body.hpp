@@ -8,10 +8,8 @@
 #include "clearway/box.hpp"
 #include "clearway/conflicts.hpp"
 #include "clearway/query.hpp"
-#include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "findings/group/cell_grid.hpp"
-#include "findings/group/point_groups.hpp"
+#include "findings/point_blocks.hpp"
 #include "findings/touched_first.hpp"
 
 namespace clearway {
@@ -31,15 +29,6 @@ struct AcrossBody {
   static constexpr double kMost = std::numeric_limits<double>::infinity();
 };
 
-/// A conflict, or a part of a group: by which body and on which poses it is touched, and where its
-/// points lie then.
-struct PartAcross {
-  std::uint32_t body = 0;  ///< the one that is touched first
-  /// The poses of its range; between poses, those of all of its ways.
-  std::uint32_t first_pose = 0, last_pose = 0;
-  AcrossBody found = {};
-};
-
 /// What moves, and how it is seen. All references must outlive it.
 struct BodiesAcross {
   std::span<const MovingBody> bodies;
@@ -54,15 +43,21 @@ struct BodiesAcross {
   Box box_from_floor(std::uint32_t body) const;
 };
 
-/// Finds for each part where its points lie across its body, at all poses of its range at which
+/// Points of a conflict, seen from the body that touches them first.
+struct PointsBeside {
+  const PointBlocks& points;
+  std::uint32_t body;
+  /// The poses of the conflict's range; between poses, those of all of its ways.
+  std::uint32_t first_pose, last_pose;
+};
+
+/// Finds where the points of each conflict lie across its body, at all poses of its range at which
 /// they are closer than the radius to the body's box and at its floor or above; between poses, at
 /// both ends of each way that may come so near, and as far beyond as the body's turn may take them.
-/// part_of_row: the index of each row's part + 1, 0 for rows of no part. Runs in the caller's arena
-/// of oneTBB. Throws Interrupted.
-void find_across_bodies(const CellGrid& grid, const PointGroups& groups,
-                        std::span<const std::uint32_t> part_of_row,
-                        const Quantisation& quantisation, const BodiesAcross& how,
-                        std::vector<PartAcross>& parts, Progress& progress);
+/// Runs in the caller's arena of oneTBB. Throws Interrupted.
+std::vector<AcrossBody> find_across_bodies(const BodiesAcross& how,
+                                           std::span<const PointsBeside> conflicts,
+                                           Progress& progress);
 
 /// Sets the trims and the side of a conflict, whose first_touch is known. body: the body's box from
 /// its floor up, and whole: its box, both along the axes of ahead_left_up().

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,7 +8,7 @@
 #include "clearway/answer.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "findings/group/cell_grid.hpp"
+#include "findings/point_blocks.hpp"
 #include "io/result/result.hpp"
 
 namespace clearway {
@@ -22,8 +21,7 @@ class CertainGroup {
   /// gap: in the unit of the scale. quantisation outlives this object.
   CertainGroup(const Quantisation& quantisation, double gap, Progress& progress);
 
-  /// point: the stored integers of a point, one on each axis.
-  void add(const std::array<std::int32_t, 3>& point);
+  void add(const QuantumPoint& point);
   /// What the points say so far. Throws Interrupted.
   CertainPoints found();
 
@@ -33,7 +31,7 @@ class CertainGroup {
   const Quantisation& quantisation_;
   double gap_;
   Progress& progress_;
-  std::vector<std::array<std::int32_t, 3>> points_;
+  std::vector<QuantumPoint> points_;
   std::size_t looked_at_ = 0;  ///< number of points when groups were last looked for
   CertainPoints found_;
 };

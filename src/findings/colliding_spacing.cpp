@@ -1,6 +1,5 @@
 #include "findings/colliding_spacing.hpp"
 
-#include <tbb/parallel_invoke.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
@@ -9,9 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <utility>
 #include <vector>
 
-#include "core/util/tsan_annotations.hpp"
 #include "io/files/parallel_loop.hpp"
 
 namespace clearway {
@@ -34,6 +33,12 @@ class Distances {
     const double x = along(a, b, 0), y = along(a, b, 1), z = along(a, b, 2);
     return x * x + y * y + z * z;
   }
+  /// No point of a box is nearer than the root of this.
+  double squared(const QuantumPoint& a, const QuantumBox& box) const {
+    QuantumPoint nearest{};
+    for (int k = 0; k < 3; ++k) nearest.q[k] = std::clamp(a.q[k], box.lo[k], box.hi[k]);
+    return same_place(a, nearest) ? 0 : squared(a, nearest);
+  }
 
   static bool same_place(const QuantumPoint& a, const QuantumPoint& b) {
     return a.q[0] == b.q[0] && a.q[1] == b.q[1] && a.q[2] == b.q[2];
@@ -46,74 +51,41 @@ class Distances {
   std::array<double, 3> step_{};
 };
 
-/// A k-d tree of places: the middle one of a run divides the rest of it, on axes in turn.
-class PlaceTree {
- public:
-  PlaceTree(std::span<const QuantumPoint> points, const Distances& distances)
-      : points_(points.begin(), points.end()), distances_(distances) {
-    tbb::parallel_sort(points_, Distances::is_before);
-    points_.erase(std::unique(points_.begin(), points_.end(), Distances::same_place),
-                  points_.end());
-    build(0, points_.size(), 0);
-  }
+/// Each place of some points once.
+std::vector<QuantumPoint> places_of(std::span<const QuantumPoint> points) {
+  std::vector<QuantumPoint> out(points.begin(), points.end());
+  tbb::parallel_sort(out, Distances::is_before);
+  out.erase(std::unique(out.begin(), out.end(), Distances::same_place), out.end());
+  return out;
+}
 
-  std::size_t size() const { return points_.size(); }
-
-  /// The squared distance to the nearest point at another place; infinity where there is none.
-  double nearest_other(const QuantumPoint& point) const {
-    double least = std::numeric_limits<double>::infinity();
-    look(0, points_.size(), 0, point, least);
-    return least;
-  }
-
- private:
-  /// Runs of so few points are searched one by one.
-  static constexpr std::size_t kLeaf = 16;
-  static constexpr std::size_t kParallel = 1 << 14;
-
-  void build(std::size_t begin, std::size_t end, int axis) {
-    if (end - begin <= kLeaf) return;
-    const std::size_t middle = begin + (end - begin) / 2;
-    const auto at = [&](std::size_t i) { return points_.begin() + static_cast<std::ptrdiff_t>(i); };
-    std::nth_element(
-        at(begin), at(middle), at(end),
-        [axis](const QuantumPoint& a, const QuantumPoint& b) { return a.q[axis] < b.q[axis]; });
-    const auto left = [&] { build(begin, middle, (axis + 1) % 3); };
-    const auto right = [&] { build(middle + 1, end, (axis + 1) % 3); };
-    if (end - begin > kParallel) {
-      const ParallelScope scope;
-      scope.begin();
-      tbb::parallel_invoke(piece_of(scope, left), piece_of(scope, right));
-    } else {
-      left();
-      right();
+/// Lowers `least` to the squared distance from a point to the nearest one of a node that is at
+/// another place.
+void keep_nearest_other(const PointBlocks& tree, std::uint32_t node, const QuantumPoint& point,
+                        const Distances& distances, double& least) {
+  if (tree.is_block(node)) {
+    for (const QuantumPoint& other : tree.points(node)) {
+      least = std::min(least, distances.squared(other, point));
     }
+    return;
   }
-
-  void look(std::size_t begin, std::size_t end, int axis, const QuantumPoint& point,
-            double& least) const {
-    if (end - begin <= kLeaf) {
-      for (std::size_t i = begin; i < end; ++i) keep_nearer(points_[i], point, least);
-      return;
-    }
-    const std::size_t middle = begin + (end - begin) / 2;
-    keep_nearer(points_[middle], point, least);
-    const bool below = point.q[axis] < points_[middle].q[axis];
-    const double away = distances_.along(points_[middle], point, axis);
-    const int next = (axis + 1) % 3;
-    const auto lower = [&] { look(begin, middle, next, point, least); };
-    const auto upper = [&] { look(middle + 1, end, next, point, least); };
-    below ? lower() : upper();
-    if (away * away < least) below ? upper() : lower();
+  std::array<std::pair<double, std::uint32_t>, 2> halves{
+      {{distances.squared(point, tree.node(2 * node + 1).box), 2 * node + 1},
+       {distances.squared(point, tree.node(2 * node + 2).box), 2 * node + 2}}};
+  if (halves[1] < halves[0]) std::swap(halves[0], halves[1]);
+  for (const auto& [away, half] : halves) {
+    if (away < least) keep_nearest_other(tree, half, point, distances, least);
   }
+}
 
-  void keep_nearer(const QuantumPoint& a, const QuantumPoint& b, double& least) const {
-    least = std::min(least, distances_.squared(a, b));
-  }
-
-  std::vector<QuantumPoint> points_;
-  const Distances distances_;
-};
+/// The squared distance from a point to the nearest one of a tree that is at another place;
+/// infinity where there is none.
+double nearest_other(const PointBlocks& tree, const QuantumPoint& point,
+                     const Distances& distances) {
+  double least = std::numeric_limits<double>::infinity();
+  keep_nearest_other(tree, 0, point, distances, least);
+  return least;
+}
 
 /// The distances from places to the nearest point at another place, found in one pass over all
 /// points. Each place has a ball about it, and each point is compared with the places whose balls
@@ -274,16 +246,17 @@ void for_each_of(std::size_t count, Progress& progress, const Visit& visit) {
   throw_if_stopped(progress);
 }
 
-/// The median for a sample of many points. The distances of its own points to each other bound
-/// those to all points, and none above their median needs to be known.
+/// The median for a sample of many points, which has these places. The distances of its own points
+/// to each other bound those to all points, and none above their median needs to be known.
 double spacing_of_many(std::span<const QuantumPoint> points, std::span<const QuantumPoint> sample,
-                       const PlaceTree& tree, const Distances& distances, Progress& progress) {
-  std::vector<QuantumPoint> places(sample.begin(), sample.end());
-  tbb::parallel_sort(places, Distances::is_before);
-  places.erase(std::unique(places.begin(), places.end(), Distances::same_place), places.end());
+                       const std::vector<QuantumPoint>& places, const Quantisation& quantisation,
+                       Progress& progress) {
+  const Distances distances(quantisation);
+  std::vector<QuantumPoint> in_tree = places;
+  const PointBlocks tree(quantisation, in_tree);
   std::vector<double> squared(places.size());
   for_each_of(places.size(), progress,
-              [&](std::size_t i) { squared[i] = tree.nearest_other(places[i]); });
+              [&](std::size_t i) { squared[i] = nearest_other(tree, places[i], distances); });
   std::vector<std::uint32_t> place_of(sample.size());
   std::vector<double> of_sample(sample.size());
   for_each_of(sample.size(), progress, [&](std::size_t i) {
@@ -308,23 +281,23 @@ double spacing_of_many(std::span<const QuantumPoint> points, std::span<const Qua
 
 std::optional<double> colliding_spacing(std::span<const QuantumPoint> points,
                                         const Quantisation& quantisation, Progress& progress) {
-  const Distances distances(quantisation);
   const std::size_t every = (points.size() + kSpacingSample - 1) / kSpacingSample;
   if (every > kFewTimes) {
     std::vector<QuantumPoint> sample;
     for (std::size_t i = 0; i < points.size(); i += every) sample.push_back(points[i]);
-    const PlaceTree tree(sample, distances);
-    throw_if_stopped(progress);
-    if (tree.size() >= kLeastPlaces) {
-      return spacing_of_many(points, sample, tree, distances, progress);
+    const std::vector<QuantumPoint> places = places_of(sample);
+    if (places.size() >= kLeastPlaces) {
+      return spacing_of_many(points, sample, places, quantisation, progress);
     }
   }
-  const PlaceTree tree(points, distances);
-  throw_if_stopped(progress);
-  if (tree.size() < kLeastPlaces) return std::nullopt;
+  std::vector<QuantumPoint> places = places_of(points);
+  if (places.size() < kLeastPlaces) return std::nullopt;
+  const PointBlocks tree(quantisation, places);
+  const Distances distances(quantisation);
   std::vector<double> squared((points.size() + every - 1) / every);
-  for_each_of(squared.size(), progress,
-              [&](std::size_t i) { squared[i] = tree.nearest_other(points[i * every]); });
+  for_each_of(squared.size(), progress, [&](std::size_t i) {
+    squared[i] = nearest_other(tree, points[i * every], distances);
+  });
   return std::sqrt(median_of(squared));
 }
 

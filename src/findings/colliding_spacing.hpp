@@ -6,7 +6,7 @@
 
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "findings/group/cell_grid.hpp"
+#include "findings/point_blocks.hpp"
 
 namespace clearway {
 

@@ -1,17 +1,14 @@
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_sort.h>
-#include <tbb/spin_mutex.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <numeric>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -24,20 +21,17 @@
 #include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/across_body.hpp"
 #include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
-#include "findings/colliding_points.hpp"
 #include "findings/colliding_spacing.hpp"
 #include "findings/conflict_rank.hpp"
 #include "findings/group/cell_grid.hpp"
 #include "findings/group/point_groups.hpp"
+#include "findings/point_blocks.hpp"
 #include "findings/row_pieces.hpp"
 #include "findings/shift/least_shift.hpp"
-#include "findings/tally_points.hpp"
 #include "findings/touched_first.hpp"
-#include "io/files/parallel_loop.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
 #include "io/result/result.hpp"
@@ -45,87 +39,148 @@
 namespace clearway {
 namespace {
 
+/// Sums over a set of points, in integers, so that they are the same in any order.
+struct Tally {
+  static constexpr auto kMost = std::numeric_limits<std::int32_t>::max();
+  static constexpr auto kLeast = std::numeric_limits<std::int32_t>::min();
+  static constexpr auto kNoPose = std::numeric_limits<std::uint32_t>::max();
+  static constexpr auto kNoSource = std::numeric_limits<std::uint64_t>::max();
+
+  std::uint64_t points = 0;
+  std::uint64_t source = kNoSource;  ///< the smallest one
+  std::uint32_t first_pose = kNoPose, latest_first_pose = 0, last_pose = 0;
+  /// Of the points with that first pose the smallest source, and the body that touches it
+  std::uint32_t first_body = 0;
+  std::uint64_t first_touched = kNoSource;
+  QuantumBox box{{kMost, kMost, kMost}, {kLeast, kLeast, kLeast}};
+  std::array<__int128, 3> sum{};
+
+  void add(const Tally& other) {
+    points += other.points;
+    source = std::min(source, other.source);
+    if (std::tie(other.first_pose, other.first_touched) < std::tie(first_pose, first_touched)) {
+      first_pose = other.first_pose;
+      first_touched = other.first_touched;
+      first_body = other.first_body;
+    }
+    latest_first_pose = std::max(latest_first_pose, other.latest_first_pose);
+    last_pose = std::max(last_pose, other.last_pose);
+    box = box.united(other.box);
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += other.sum[k];
+  }
+};
+
+/// Tallies consecutive points that have the same number, and hands each such run on at its end, so
+/// that locks are taken rarely.
+class RunOfPoints {
+ public:
+  RunOfPoints(std::vector<Tally>& into, SharedLocks& locks) : into_(into), locks_(locks) {}
+  RunOfPoints(const RunOfPoints&) = delete;
+  RunOfPoints& operator=(const RunOfPoints&) = delete;
+  ~RunOfPoints() { hand_on(); }
+
+  void add(std::size_t number, const Tally& point) {
+    if (number != number_) hand_on();
+    number_ = number;
+    tally_.add(point);
+  }
+
+ private:
+  void hand_on() {
+    if (tally_.points > 0) locks_.hold(number_, [&] { into_[number_].add(tally_); });
+    tally_ = {};
+  }
+
+  std::vector<Tally>& into_;
+  SharedLocks& locks_;
+  std::size_t number_ = 0;
+  Tally tally_;
+};
+
+/// The parts that groups are cut into. The parts of a group are consecutive, one for each stretch
+/// of the path from the group's first to its last pose, and may be empty.
+struct GroupParts {
+  std::uint64_t first;    ///< the number of the group's first part
+  std::uint32_t stretch;  ///< the stretch of that part
+  bool is_cut;
+};
+
+/// The points of a conflict that are touched at its first pose, by the body that touches the first
+/// of them.
+struct TouchedFirst {
+  std::uint64_t source;        ///< of the first of them
+  const Pose* pose = nullptr;  ///< pose of the body there; null where it is not known
+  Vec3 place{};                ///< place of the first of them
+  /// The box around the points, with the axes ahead, to the left and up of the pose.
+  Box seen{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+
+  /// Whether all sides of `seen` are finite; false where the pose cannot be inverted.
+  bool is_finite() const {
+    const Vec3 size = seen.size();
+    return std::isfinite(size.x) && std::isfinite(size.y) && std::isfinite(size.z);
+  }
+
+ private:
+  static constexpr double kMost = std::numeric_limits<double>::infinity();
+};
+
 /// What find_conflicts() takes of the memory budget. The checks throw ResourceError with an amount
 /// that is enough.
 class ConflictMemory {
  public:
   ConflictMemory(std::uint64_t allowed, std::uint64_t points, std::uint64_t poses)
-      : allowed_(allowed), points_(points), poses_(poses) {}
+      : allowed_(allowed),
+        points_(points),
+        held_(kProgram + points * kBytesOfPoint +
+              poses * (sizeof(Pose) + sizeof(double) + sizeof(std::uint32_t))) {}
 
-  /// Called before the points are read: checks the memory of the points and their grid.
-  void check_points() const;
-  /// Called before the cells of the grid are kept: checks the memory of that many cells.
-  void check_cells(std::uint64_t cells) const;
-  /// Called before groups are summed up: checks the memory of that many cells and parts.
-  void check_parts(std::uint64_t cells, std::uint64_t parts) const;
+  /// Called before the points are read.
+  void check_points() const {
+    if (points_ > kMostPoints) {
+      throw UsageError(format_count(points_) + " colliding points; conflicts are made of up to " +
+                       format_count(kMostPoints));
+    }
+    check(held_, held_ + points_ * kBytesOfPointAtWork);
+  }
+  /// How many points may be at work at the same time.
+  GroupingLimit at_work() const {
+    return {(allowed_ - held_) / kBytesOfPointAtWork, [this](std::uint64_t points) {
+              const std::uint64_t needed = held_ + points * kBytesOfPointAtWork;
+              check(needed, needed);
+            }};
+  }
+  /// Called before groups are summed up: checks the memory of so many groups and parts.
+  void check_parts(std::uint64_t parts) const {
+    if (parts > kMostPoints) {
+      throw UsageError(format_count(parts) + " conflicts; expected fewer than " +
+                       format_count(kMostPoints));
+    }
+    const std::uint64_t needed = held_ + parts * kBytesOfPart;
+    check(needed, needed);
+  }
 
  private:
-  std::uint64_t fixed() const;
-  std::uint64_t with_cells(std::uint64_t cells) const;
-  void check(std::uint64_t needed, std::uint64_t enough) const;
+  void check(std::uint64_t needed, std::uint64_t enough) const {
+    if (needed <= allowed_) return;
+    throw ResourceError(format_size(allowed_) + " of memory is too little: the conflicts of " +
+                            counted(points_, "point") + " need at least " + format_size(needed),
+                        Remedy::kMoreMemory, static_cast<double>(enough));
+  }
 
-  std::uint64_t allowed_, points_, poses_;
+  static constexpr std::uint64_t kProgram = std::uint64_t{32} << 20;  // with the reader's buffers
+  static constexpr std::uint64_t kMostPoints = 0xffff'fffe;
+  /// Bytes of a point as long as conflicts are made: its integers, its group, and in turn the size
+  /// of its group, its new place among the points of its conflict, and its part of their tree.
+  static constexpr std::uint64_t kBytesOfPoint = sizeof(QuantumPoint) + 2 * sizeof(std::uint32_t);
+  static_assert(PointBlocks::kBytesOfPoint <= sizeof(std::uint32_t));
+  /// Bytes of a group or part, with its conflict, which counts twice because vectors grow to twice
+  /// their size, its tree, and what finding its trims and shifts takes.
+  static constexpr std::uint64_t kBytesOfPart =
+      sizeof(Tally) + sizeof(TouchedFirst) + sizeof(AcrossBody) + 2 * sizeof(Conflict) +
+      sizeof(PointBlocks) + PointBlocks::kBytesOfTree + sizeof(PointsToFree) + 128;
+
+  const std::uint64_t allowed_, points_, held_;
 };
-
-constexpr std::uint64_t kProgram = std::uint64_t{32} << 20;  // includes the reader's buffers
-constexpr std::uint64_t kMostPoints = 0xffff'fffe;
-
-/// Bytes of a cell: what the grid holds of it, its set, its group, and the count of its points.
-constexpr std::uint64_t kBytesOfCell = CellGrid::kBytesOfCell + 3 * sizeof(std::uint32_t);
-/// Bytes of a point once it is in the grid, including its source, first and last pose, body, class
-/// and part.
-constexpr std::uint64_t kBytesOfSortedPoint = CellGrid::kBytesOfPoint + sizeof(std::uint64_t) +
-                                              3 * sizeof(std::uint32_t) + 2 + kJoinBytesOfPoint;
-constexpr std::uint64_t kBytesOfUnsortedPoint =
-    CollidingPoints::kBytesOfPoint + CellGrid::kBytesOfPoint;
-/// Bytes of a part, with where it lies across its body, its conflict, which counts twice because
-/// vectors grow to twice their size, and what finding its shifts takes.
-constexpr std::uint64_t kBytesOfPart = sizeof(Tally) + sizeof(PartAcross) + 2 * sizeof(Conflict) +
-                                       32 + LeastShift::kBytesOfSet + sizeof(PointsToFree);
-// Classes are counted when the memory of the grid is free again.
-static_assert(sizeof(std::uint64_t) <= CellGrid::kBytesOfPoint);
-// Shifts are found when the memory of joining points is free again, and their trees are made when
-// that of the grid is, too.
-static_assert(sizeof(QuantumPoint) <= kJoinBytesOfPoint);
-static_assert(sizeof(QuantumPoint) + LeastShift::kBytesOfPoint <=
-              kJoinBytesOfPoint + CellGrid::kBytesOfPoint);
-
-std::uint64_t ConflictMemory::fixed() const {
-  return kProgram + poses_ * (sizeof(Pose) + sizeof(double) + sizeof(std::uint32_t));
-}
-
-std::uint64_t ConflictMemory::with_cells(std::uint64_t cells) const {
-  return fixed() + cells * kBytesOfCell +
-         points_ * std::max(kBytesOfUnsortedPoint, kBytesOfSortedPoint);
-}
-
-void ConflictMemory::check_points() const {
-  if (points_ > kMostPoints) {
-    throw UsageError(format_count(points_) + " colliding points; conflicts are made of up to " +
-                     format_count(kMostPoints));
-  }
-  check(fixed() + points_ * kBytesOfUnsortedPoint, with_cells(points_));
-}
-
-void ConflictMemory::check_cells(std::uint64_t cells) const {
-  check(with_cells(cells), with_cells(cells));
-}
-
-void ConflictMemory::check_parts(std::uint64_t cells, std::uint64_t parts) const {
-  if (parts > kMostPoints) {
-    throw UsageError(format_count(parts) + " conflicts; expected fewer than " +
-                     format_count(kMostPoints));
-  }
-  const std::uint64_t needed = with_cells(cells) + parts * kBytesOfPart;
-  check(needed, needed);
-}
-
-void ConflictMemory::check(std::uint64_t needed, std::uint64_t enough) const {
-  if (needed <= allowed_) return;
-  throw ResourceError(format_size(allowed_) + " of memory is too little: the conflicts of " +
-                          counted(points_, "point") + " need at least " + format_size(needed),
-                      Remedy::kMoreMemory, static_cast<double>(enough));
-}
 
 /// The point of a conflict that is nearest to the model.
 struct ConflictDistance {
@@ -154,17 +209,16 @@ class NearestPoints {
     const double distance = rows.distance[i];
     if (distance < 0) inside_[conflict].fetch_add(1, std::memory_order_relaxed);
     if (distance > known_[conflict].load(std::memory_order_relaxed)) return;
-    tbb::spin_mutex& lock = locks_[conflict % locks_.size()];
-    const tbb::spin_mutex::scoped_lock held(lock);
-    acquire(&lock);
-    ConflictDistance& nearest = nearest_[conflict];
-    if (nearest.source == ConflictDistance::kNone || distance < nearest.distance ||
-        (distance == nearest.distance && rows.source[i] < nearest.source)) {
+    locks_.hold(conflict, [&] {
+      ConflictDistance& nearest = nearest_[conflict];
+      if (nearest.source != ConflictDistance::kNone &&
+          std::pair(distance, rows.source[i]) >= std::pair(nearest.distance, nearest.source)) {
+        return;
+      }
       nearest = {distance, rows.source[i], rows.pose[i], rows.xyz[i],
                  rows.body.empty() ? std::nullopt : std::optional(rows.body[i])};
       known_[conflict].store(distance, std::memory_order_relaxed);
-    }
-    release(&lock);
+    });
   }
 
   std::vector<ConflictDistance> take() {
@@ -176,53 +230,46 @@ class NearestPoints {
   std::vector<ConflictDistance> nearest_;
   std::vector<std::atomic<double>> known_;
   std::vector<std::atomic<std::uint64_t>> inside_;
-  std::array<tbb::spin_mutex, 64> locks_;
+  SharedLocks locks_;
 };
 
-/// Joins the clearances with the colliding points; both are in ascending order of their source.
-/// Returns the nearest point of each conflict at the conflict's number, from 1 to `conflicts`.
-/// conflict_of: the conflict of each row, 0 for none.
-std::vector<ConflictDistance> least_distances(const ResultReader& result,
-                                              std::span<const std::uint64_t> source,
-                                              std::span<const std::uint32_t> conflict_of,
-                                              std::size_t conflicts, Progress& progress) {
-  NearestPoints nearest(conflicts);
+/// Points of a result in ascending order of their source, with the conflict of each, 0 for none.
+struct JoinedPoints {
+  std::vector<std::uint64_t> source;
+  std::span<const std::uint32_t> conflict_of;
+  std::size_t first = 0;  ///< below it, no source is among those of later clearances
+};
+
+/// Joins the clearances with the points, and offers them to the nearest of each conflict.
+void join_distances(const ResultReader& result, std::array<JoinedPoints, 2> points,
+                    NearestPoints& nearest, Progress& progress) {
   progress.begin("distances", result.clearances(), "points");
   RowStream<Clearances> stream(result);
-  std::size_t first_row = 0;  // below it, no source is among those of later clearances
   for (Clearances rows; stream.read(rows);) {
     throw_if_stopped(progress);
-    const std::span<const std::uint64_t> left = source.subspan(first_row);
-    in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
-      auto at = std::ranges::lower_bound(left, rows.source[first]);
-      for (std::size_t i = first; i < end; ++i) {
-        while (at != left.end() && *at < rows.source[i]) ++at;
-        if (at == left.end()) return;
-        if (*at != rows.source[i]) continue;
-        const std::uint32_t conflict = conflict_of[static_cast<std::size_t>(&*at - source.data())];
-        if (conflict != 0) nearest.offer(conflict, rows, i);
-      }
-    });
-    first_row +=
-        static_cast<std::size_t>(std::ranges::upper_bound(left, rows.source.back()) - left.begin());
+    for (JoinedPoints& of : points) {
+      const std::span left = std::span(of.source).subspan(of.first);
+      in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+        auto at = std::ranges::lower_bound(left, rows.source[first]);
+        for (std::size_t i = first; i < end; ++i) {
+          while (at != left.end() && *at < rows.source[i]) ++at;
+          if (at == left.end()) return;
+          if (*at != rows.source[i]) continue;
+          const std::uint32_t conflict =
+              of.conflict_of[static_cast<std::size_t>(&*at - of.source.data())];
+          if (conflict != 0) nearest.offer(conflict, rows, i);
+        }
+      });
+      of.first += static_cast<std::size_t>(std::ranges::upper_bound(left, rows.source.back()) -
+                                           left.begin());
+    }
     progress.advance(rows.size());
   }
   progress.end();
-  return nearest.take();
 }
 
-/// Points in the order of their conflicts.
-struct PointsOfConflicts {
-  std::vector<QuantumPoint> points;
-  /// The first point of each conflict, by its number - 1, and at the end the number of all points.
-  std::vector<std::size_t> first;
-
-  std::span<QuantumPoint> of(std::uint32_t id) {
-    return std::span(points).subspan(first[id - 1], first[id] - first[id - 1]);
-  }
-};
-
-/// One call of find_conflicts(), step by step.
+/// One call of find_conflicts(), step by step. Rows are numbered through all colliding points and
+/// then all near ones.
 class ConflictSearch {
  public:
   inline static const Model kNoModel{};
@@ -232,10 +279,13 @@ class ConflictSearch {
   ConflictSearch(const Result& result, const std::vector<Pose>& poses,
                  const ConflictOptions& options, Progress& progress)
       : reader_(result.reader()),
+        header_(reader_.header()),
         poses_(poses),
         options_(options),
+        bodies_(moving_bodies(options.model != nullptr ? *options.model : kNoModel, poses,
+                              options.bodies, header_.floor)),
         boxes_(boxes_of(result, options)),
-        metre_(metres_per_unit(reader_.header())),
+        metre_(metres_per_unit(header_)),
         progress_(progress),
         memory_(options.memory_bytes, reader_.collisions() + reader_.near(), poses.size()),
         chainage_(chainage_of(poses)) {}
@@ -245,71 +295,50 @@ class ConflictSearch {
     out_.path_length = chainage_.empty() ? 0 : chainage_.back();
     out_.colliding_points = reader_.collisions();
     out_.near_points = reader_.near();
-    if (conflict_of != nullptr) conflict_of->clear();
-    if (conflict_of_near != nullptr) conflict_of_near->clear();
     out_.knows_trims = !boxes_.empty();
     out_.knows_shifts =
         !options_.bodies.empty() || (options_.model != nullptr && !options_.model->empty());
+    if (conflict_of != nullptr) conflict_of->clear();
+    if (conflict_of_near != nullptr) conflict_of_near->clear();
     if (out_.colliding_points + out_.near_points == 0) {
       choose_grouping();
       return std::move(out_);
     }
     memory_.check_points();
-    points_ = read_colliding_points(reader_, progress_);
+    read();
     choose_grouping();
-    const std::vector<std::uint32_t> certain = rows_of_certain_groups();
     group();
-    std::vector<std::uint32_t> part_of_row = list();
-    classify(certain, part_of_row);
-    std::vector<std::uint32_t> of_near = take_near(part_of_row);
-    if (conflict_of_near != nullptr) *conflict_of_near = std::move(of_near);
-    if (conflict_of != nullptr) *conflict_of = std::move(part_of_row);
+    list();
+    look_at_rows();
+    if (out_.knows_shifts || out_.knows_trims) look_at_places();
+    quanta_ = {};
+    add_distances();
+    for (Conflict& conflict : out_.listed) complete(conflict);
+    rank(out_);
+    const auto near = of_row_.begin() + static_cast<std::ptrdiff_t>(out_.colliding_points);
+    if (conflict_of_near != nullptr) conflict_of_near->assign(near, of_row_.end());
+    of_row_.erase(near, of_row_.end());
+    if (conflict_of != nullptr) *conflict_of = std::move(of_row_);
     return std::move(out_);
   }
 
  private:
-  /// The rows of the points that are certainly too close and of which ten or more hang together by
-  /// the gap of the search, in no particular order.
-  std::vector<std::uint32_t> rows_of_certain_groups() {
-    std::vector<QuantumPoint> quanta;
-    std::vector<std::uint32_t> row_of, out;
-    for (std::size_t row = 0; row < points_.kind.size(); ++row) {
-      if (points_.kind[row] != CollidingPoints::kCertain) continue;
-      quanta.push_back(points_.quanta[row]);
-      row_of.push_back(static_cast<std::uint32_t>(row));
-    }
-    const ResultHeader& header = reader_.header();
-    for (const std::uint32_t member :
-         members_of_certain_groups(quanta, header.quantisation, header.gap, progress_)) {
-      out.push_back(row_of[member]);
-    }
-    return out;
-  }
-
-  /// Says of each conflict whether it is certain. certain: rows_of_certain_groups().
-  void classify(std::span<const std::uint32_t> certain,
-                std::span<const std::uint32_t> conflict_of_row) {
-    if (!reader_.header().budget) return;
-    for (Conflict& conflict : out_.listed) conflict.certain = false;
-    for (const std::uint32_t row : certain) {
-      if (const std::uint32_t id = conflict_of_row[row]) out_.listed[id - 1].certain = true;
-    }
-  }
-
-  /// Removes the rows of near points, so that the rest are those of /collisions, and returns them.
-  std::vector<std::uint32_t> take_near(std::vector<std::uint32_t>& of_row) const {
-    std::vector<std::uint32_t> near;
-    if (points_.kind.empty()) return near;
-    std::size_t kept = 0;
-    for (std::size_t row = 0; row < of_row.size(); ++row) {
-      if (points_.kind[row] == CollidingPoints::kNear) {
-        near.push_back(of_row[row]);
-      } else {
-        of_row[kept++] = of_row[row];
+  void read() {
+    quanta_.resize(out_.colliding_points + out_.near_points);
+    if (header_.budget) certain_.resize(quanta_.size());
+    progress_.begin("read", quanta_.size(), "points");
+    for_each_rows(reader_, [&](const auto& rows, std::size_t first) {
+      throw_if_stopped(progress_);
+      requantize(reader_, rows, std::span(quanta_).subspan(first));
+      count_classes(rows.point_class, out_.classes);
+      if constexpr (requires { rows.certain; }) {
+        for (std::size_t i = 0; i < rows.certain.size(); ++i) {
+          certain_[first + i] = rows.certain[i] != 0;
+        }
       }
-    }
-    of_row.resize(kept);
-    return near;
+      progress_.advance(rows.size());
+    });
+    progress_.end();
   }
 
   static double metres_per_unit(const ResultHeader& header) {
@@ -319,73 +348,99 @@ class ConflictSearch {
 
   /// Chooses the gap and the least number of points, where the options leave them open.
   void choose_grouping() {
-    const Grouping usual =
-        usual_grouping(out_.colliding_points > 0, spacing_of_colliding(), metre_);
+    out_.spacing = colliding_spacing(std::span(quanta_).first(out_.colliding_points),
+                                     header_.quantisation, progress_);
+    const Grouping usual = usual_grouping(out_.colliding_points > 0, out_.spacing, metre_);
     out_.gap = options_.gap > 0 ? options_.gap : usual.gap;
     out_.min_points = options_.min_points > 0 ? options_.min_points : usual.min_points;
   }
 
-  std::optional<double> spacing_of_colliding() {
-    std::vector<QuantumPoint> colliding;
-    if (out_.near_points > 0) {
-      for (std::size_t row = 0; row < points_.kind.size(); ++row) {
-        if (points_.kind[row] != CollidingPoints::kNear) colliding.push_back(points_.quanta[row]);
+  void group() {
+    const GroupingLimit limit = memory_.at_work();
+    if (header_.budget) {
+      // Keeps those of which ten or more hang together by the gap of the search.
+      const PointGroups sure =
+          group_points(quanta_, Neighbourhood(header_.quantisation, header_.gap),
+                       kLeastCertainGroup, progress_, limit, &certain_);
+      for (std::size_t row = 0; row < certain_.size(); ++row) {
+        certain_[row] = !PointGroups::is_small(sure.of_point[row]);
       }
     }
-    out_.spacing = colliding_spacing(out_.near_points > 0 ? colliding : points_.quanta,
-                                     reader_.header().quantisation, progress_);
-    return out_.spacing;
-  }
-
-  void group() {
-    const Neighbourhood neighbourhood(reader_.header().quantisation, out_.gap);
-    grid_.emplace(points_.quanta, neighbourhood,
-                  [this](std::uint64_t cells) { memory_.check_cells(cells); });
-    points_.quanta = {};
-    UnionFind sets(grid_->cells());
-    join_cells(*grid_, neighbourhood, sets, progress_);
-    groups_ = number_groups(*grid_, sets, out_.min_points);
+    groups_ = group_points(quanta_, Neighbourhood(header_.quantisation, out_.gap), out_.min_points,
+                           progress_, limit);
     out_.groups = groups_.count + groups_.small_groups;
     out_.small_groups = groups_.small_groups;
     out_.small_points = groups_.small_points;
   }
 
-  /// Lists the conflicts, and returns the conflict of each row.
-  std::vector<std::uint32_t> list() {
-    const std::uint64_t groups_in_all = groups_.count + groups_.small_groups;
-    memory_.check_parts(grid_->cells(), groups_in_all);
-    const TouchPoses touch{points_.first_pose, points_.last_pose};
-    list_small(tally_small_groups(*grid_, groups_, touch, progress_));
-    const std::vector<Tally> groups = tally_groups(*grid_, groups_, touch, progress_);
-    note_longest(groups);
-    const PathStretches stretches(chainage_, options_.split);
-    const GroupParts parts = cut(groups, stretches);
-    memory_.check_parts(grid_->cells(), groups_in_all + parts.count());
-    std::vector<std::uint32_t> part_of_row(points_.source.size());
-    const std::vector<Tally> tallies =
-        tally_parts(*grid_, groups_, parts, stretches, touch, part_of_row, progress_);
-    make_conflicts(groups, parts, tallies);
-    add_touched_first(tallies, part_of_row);
-    add_trims(tallies, part_of_row);
-    number(part_of_row, tallies.size());
-    PointsOfConflicts to_free = points_to_free(part_of_row);
-    grid_.reset();
-    add_distances(part_of_row);
-    add_depths(part_of_row);
-    for (Conflict& conflict : out_.listed) complete(conflict);
-    count_colliding(part_of_row);
-    add_classes(part_of_row);
-    add_shifts(std::move(to_free));
-    rank(out_);
-    return part_of_row;
+  static constexpr std::size_t kNotTallied = ~std::size_t{0};
+
+  /// Tallies points in one pass over the rows. number_of(row, first pose): the number of the tally
+  /// that a row counts for, or kNotTallied.
+  template <typename NumberOf>
+  std::vector<Tally> tally(std::size_t count, const NumberOf& number_of) const {
+    std::vector<Tally> tallies(count);
+    SharedLocks locks;
+    for_each_rows(reader_, [&](const auto& rows, std::size_t first_row) {
+      throw_if_stopped(progress_);
+      in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+        RunOfPoints run(tallies, locks);
+        for (std::size_t i = first; i < end; ++i) {
+          const std::size_t row = first_row + i, number = number_of(row, rows.first_pose[i]);
+          if (number == kNotTallied) continue;
+          const auto& [x, y, z] = quanta_[row].q;
+          run.add(number, {.points = 1,
+                           .source = rows.source[i],
+                           .first_pose = rows.first_pose[i],
+                           .latest_first_pose = rows.first_pose[i],
+                           .last_pose = last_pose_of(rows, i),
+                           .first_body = rows.body.empty() ? 0 : rows.body[i],
+                           .first_touched = rows.source[i],
+                           .box = {{x, y, z}, {x, y, z}},
+                           .sum = {x, y, z}});
+        }
+      });
+    });
+    return tallies;
   }
 
-  void list_small(const std::vector<Tally>& tallies) {
-    for (const Tally& tally : tallies) {
-      out_.small.push_back({tally.points, points_.source[tally.first_row],
-                            position_box(reader_.header().quantisation, tally.box),
-                            tally.first_pose, tally.last_pose,
-                            chainage_[tally.first_pose] + options_.chainage_start,
+  /// Lists the conflicts.
+  void list() {
+    memory_.check_parts(out_.groups);
+    const std::vector<Tally> groups = tally(out_.groups, [&](std::size_t row, std::uint32_t) {
+      const std::uint32_t group = groups_.of_point[row];
+      return PointGroups::is_small(group) ? groups_.count + (group & ~PointGroups::kSmall) : group;
+    });
+    const auto listed = std::span(groups).first(groups_.count);
+    list_small(std::span(groups).subspan(groups_.count));
+    note_longest(listed);
+    const PathStretches stretches(chainage_, options_.split);
+    const std::vector<GroupParts> parts = cut(listed, stretches);
+    memory_.check_parts(out_.groups + parts.back().first);
+    // From here on, the number of a row's part and one more, and 0 for rows of small groups.
+    of_row_ = std::move(groups_.of_point);
+    const std::vector<Tally> tallies =
+        tally(parts.back().first, [&](std::size_t row, std::uint32_t first_pose) {
+          const std::uint32_t group = std::exchange(of_row_[row], 0);
+          if (PointGroups::is_small(group)) return kNotTallied;
+          std::uint64_t part = parts[group].first;
+          if (parts[group].is_cut) part += stretches[first_pose] - parts[group].stretch;
+          of_row_[row] = static_cast<std::uint32_t>(part + 1);
+          return static_cast<std::size_t>(part);
+        });
+    for (std::size_t group = 0; group < listed.size(); ++group) {
+      for (std::uint64_t part = parts[group].first; part < parts[group + 1].first; ++part) {
+        if (tallies[part].points > 0) add_conflict(part, tallies[part], listed[group].source);
+      }
+    }
+    number(tallies);
+  }
+
+  void list_small(std::span<const Tally> groups) {
+    for (const Tally& tally : groups) {
+      out_.small.push_back({tally.points, tally.source,
+                            position_box(header_.quantisation, tally.box), tally.first_pose,
+                            tally.last_pose, chainage_[tally.first_pose] + options_.chainage_start,
                             chainage_[end_of(tally.last_pose)] + options_.chainage_start,
                             station_of(tally.first_pose), station_of(end_of(tally.last_pose))});
     }
@@ -396,7 +451,7 @@ class ConflictSearch {
 
   /// The pose at which the contact of a last pose ends, which between poses is the end of its way.
   std::uint32_t end_of(std::uint32_t last_pose) const {
-    const bool way = reader_.header().between_poses && last_pose + 1 < chainage_.size();
+    const bool way = header_.between_poses && last_pose + 1 < chainage_.size();
     return last_pose + (way ? 1 : 0);
   }
 
@@ -409,7 +464,7 @@ class ConflictSearch {
     return chainage_[tally.latest_first_pose] - chainage_[tally.first_pose];
   }
 
-  void note_longest(const std::vector<Tally>& groups) {
+  void note_longest(std::span<const Tally> groups) {
     std::uint32_t longest = 0;
     for (std::uint32_t i = 0; i < groups.size(); ++i) {
       const double length = length_of(groups[i]);
@@ -424,20 +479,18 @@ class ConflictSearch {
 
   /// Finds where the points of a group lie when they are first touched, and what that says of them.
   void place_longest(std::uint32_t group) {
-    const double low = ground_height(unit_of(reader_.header()));
+    const double low = ground_height(unit_of(header_));
     double from = std::numeric_limits<double>::infinity(), to = -from;
     std::uint64_t in_lowest = 0, below = 0, left = 0, right = 0;
     bool is_inside = true;
-    for (std::uint32_t cell = 0; cell < grid_->cells(); ++cell) {
-      if (groups_.of_cell[cell] != group) continue;
-      for (const GroupedPoint& p : std::as_const(*grid_).points(cell)) {
-        const auto body =
-            points_.body.empty() ? std::nullopt : std::optional<std::uint32_t>(points_.body[p.row]);
-        const Pose* pose = pose_of(body, points_.first_pose[p.row]);
+    for_each_rows(reader_, [&](const auto& rows, std::size_t first_row) {
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (groups_.of_point[first_row + i] != group) continue;
+        const auto body = body_of(rows, i);
+        const Pose* pose = pose_of(body, rows.first_pose[i]);
         if (pose == nullptr) continue;
         const Box box = turned(boxes_[body.value_or(0)], options_.forward, options_.up);
-        const Vec3 place = position(reader_.header().quantisation, p.q[0], p.q[1], p.q[2]);
-        const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
+        const Vec3 there = ahead_left_up(rows.xyz[i], *pose, options_.forward, options_.up);
         const double height = there.z - box.lo.z;
         from = std::min(from, height);
         to = std::max(to, height);
@@ -447,7 +500,7 @@ class ConflictSearch {
         is_inside = is_inside && there.y > box.lo.y && there.y < box.hi.y && there.z > box.lo.z &&
                     there.z < box.hi.z;
       }
-    }
+    });
     if (!std::isfinite(from) || !std::isfinite(to)) return;
     out_.longest_group_height_from = from;
     out_.longest_group_height_to = to;
@@ -462,43 +515,40 @@ class ConflictSearch {
     }
   }
 
-  GroupParts cut(const std::vector<Tally>& groups, const PathStretches& stretches) const {
-    GroupParts out;
+  /// The body that touches a point at its first pose.
+  template <typename Rows>
+  static std::optional<std::uint32_t> body_of(const Rows& rows, std::size_t i) {
+    return rows.body.empty() ? std::nullopt : std::optional(rows.body[i]);
+  }
+
+  /// The parts of each group, and at the end the number of all parts.
+  std::vector<GroupParts> cut(std::span<const Tally> groups, const PathStretches& stretches) const {
+    std::vector<GroupParts> out;
     std::uint64_t next = 0;
     for (const Tally& group : groups) {
       const bool is_cut = options_.split > 0 && length_of(group) > options_.split;
       const std::uint32_t stretch = stretches[group.first_pose];
-      out.first.push_back(next);
-      out.stretch.push_back(stretch);
-      out.is_cut.push_back(is_cut);
+      out.push_back({next, stretch, is_cut});
       next += is_cut ? stretches[group.latest_first_pose] - stretch + 1 : 1;
     }
-    out.first.push_back(next);
+    out.push_back({next, 0, false});
     return out;
   }
 
-  /// Makes a conflict for each part that is not empty, in the order of the parts. Its id is for now
-  /// the part's index + 1.
-  void make_conflicts(const std::vector<Tally>& groups, const GroupParts& parts,
-                      const std::vector<Tally>& tallies) {
-    const Quantisation& quantisation = reader_.header().quantisation;
-    for (std::size_t group = 0; group < groups.size(); ++group) {
-      for (std::uint64_t part = parts.first[group]; part < parts.first[group + 1]; ++part) {
-        const Tally& tally = tallies[part];
-        if (tally.points == 0) continue;
-        Conflict conflict;
-        conflict.id = static_cast<std::uint32_t>(part + 1);
-        conflict.points = tally.points;
-        conflict.source = points_.source[tally.first_row];
-        conflict.group = points_.source[groups[group].first_row];
-        conflict.box = position_box(quantisation, tally.box);
-        conflict.centroid = centroid_of(tally, quantisation);
-        conflict.first_pose = tally.first_pose;
-        conflict.last_pose = tally.last_pose;
-        conflict.chainage_from = chainage_[tally.first_pose];
-        out_.listed.push_back(conflict);
-      }
-    }
+  /// Adds the conflict of a part, whose id is for now the part's number.
+  void add_conflict(std::uint64_t part, const Tally& tally, std::uint64_t group) {
+    Conflict& conflict = out_.listed.emplace_back();
+    conflict.id = static_cast<std::uint32_t>(part);
+    conflict.points = conflict.colliding = tally.points;
+    conflict.source = tally.source;
+    conflict.group = group;
+    conflict.box = position_box(header_.quantisation, tally.box);
+    conflict.centroid = centroid_of(tally, header_.quantisation);
+    conflict.first_pose = tally.first_pose;
+    conflict.last_pose = tally.last_pose;
+    conflict.chainage_from = chainage_[tally.first_pose];
+    if (header_.has_first_bodies()) conflict.body = conflict.first_body = tally.first_body;
+    if (header_.budget) conflict.certain = false;
   }
 
   static Vec3 centroid_of(const Tally& tally, const Quantisation& quantisation) {
@@ -513,20 +563,19 @@ class ConflictSearch {
     return out;
   }
 
-  void number(std::vector<std::uint32_t>& part_of_row, std::size_t parts) {
-    std::ranges::sort(out_.listed, [](const Conflict& a, const Conflict& b) {
-      return a.chainage_from != b.chainage_from ? a.chainage_from < b.chainage_from
-                                                : a.source < b.source;
+  /// Gives the conflicts their ids, and the rows those of their conflicts.
+  void number(std::span<const Tally> tallies) {
+    std::ranges::sort(out_.listed, {}, [](const Conflict& conflict) {
+      return std::pair(conflict.chainage_from, conflict.source);
     });
-    std::vector<std::uint32_t> id_of_part(parts + 1);
-    std::vector<Vec3> places;
-    for (std::size_t i = 0; i < out_.listed.size(); ++i) {
-      places.push_back(first_places_[out_.listed[i].id - 1]);
-      id_of_part[out_.listed[i].id] = static_cast<std::uint32_t>(i + 1);
-      out_.listed[i].id = static_cast<std::uint32_t>(i + 1);
+    std::vector<std::uint32_t> id_of(tallies.size() + 1);
+    for (Conflict& conflict : out_.listed) {
+      const Tally& tally = tallies[conflict.id];
+      touched_.push_back({tally.first_touched, pose_of(conflict.body, conflict.first_pose)});
+      id_of[conflict.id + 1] = static_cast<std::uint32_t>(touched_.size());
+      conflict.id = id_of[conflict.id + 1];
     }
-    first_places_ = std::move(places);
-    for (std::uint32_t& part : part_of_row) part = id_of_part[part];
+    for (std::uint32_t& part : of_row_) part = id_of[part];
   }
 
   /// The boxes of the model or of each body; empty where they are not known. The bodies of a
@@ -538,59 +587,181 @@ class ConflictSearch {
     return boxes;
   }
 
-  /// Sets the sides, and finds the places by which conflicts without clearances are seen. Called
-  /// before conflicts are numbered.
-  void add_touched_first(const std::vector<Tally>& tallies,
-                         std::span<const std::uint32_t> part_of_row) {
-    const Quantisation& quantisation = reader_.header().quantisation;
-    std::vector<TouchedFirst> firsts(tallies.size());
-    for (Conflict& conflict : out_.listed) {
-      const Tally& tally = tallies[conflict.id - 1];
-      if (!points_.body.empty()) conflict.body = points_.body[tally.first_touched];
-      conflict.first_body = conflict.body;
-      firsts[conflict.id - 1] = {tally.first_pose, tally.first_touched, conflict.body,
-                                 pose_of(conflict.body, tally.first_pose)};
+  /// Finds in one pass over the rows how many points of each conflict collide, which are touched
+  /// first, the greatest depths, which conflicts are certain, and the classes.
+  void look_at_rows() {
+    SharedLocks locks;
+    std::map<std::uint64_t, std::uint64_t> classes;  // points by conflict and class
+    for_each_rows(reader_, [&](const auto& rows, std::size_t first) {
+      throw_if_stopped(progress_);
+      const std::span<const std::uint32_t> of_row = std::span(of_row_).subspan(first, rows.size());
+      add_touched(rows, of_row, locks);
+      add_classes(rows.point_class, of_row, classes);
+      for (std::size_t i = 0; i < rows.size(); ++i) {
+        if (of_row[i] == 0) continue;
+        Conflict& conflict = out_.listed[of_row[i] - 1];
+        if (header_.budget && certain_[first + i]) conflict.certain = true;
+        if constexpr (requires { rows.depth; }) {
+          if (has_depths()) add_depth(rows.depth[i], rows.depth_source[i], conflict);
+        } else {
+          --conflict.colliding;
+        }
+      }
+    });
+    for (const auto& [key, count] : classes) {
+      Conflict& conflict = out_.listed[(key >> 8) - 1];
+      if (count <= conflict.main_class_points.value_or(0)) continue;
+      conflict.main_class = static_cast<std::uint32_t>(key & 0xff);
+      conflict.main_class_points = count;
     }
-    const AheadLeftUp axes{options_.forward, options_.up};
-    find_touched_first(*grid_, groups_, points_, part_of_row, quantisation, axes, firsts,
-                       progress_);
     for (Conflict& conflict : out_.listed) {
-      const TouchedFirst& first = firsts[conflict.id - 1];
+      const TouchedFirst& first = touched_[conflict.id - 1];
       if (boxes_.empty() || first.pose == nullptr || !first.is_finite()) continue;
       const Box& box = boxes_[conflict.body.value_or(0)];
       conflict.first_touch = side_of(first.seen, box, options_.forward, options_.up);
     }
-    for (const TouchedFirst& first : firsts) first_places_.push_back(first.place);
   }
 
-  /// Sets the trims and the sides. Called before conflicts are numbered.
-  void add_trims(const std::vector<Tally>& tallies, std::span<const std::uint32_t> part_of_row) {
-    if (boxes_.empty()) return;
-    const ResultHeader& header = reader_.header();
-    const std::vector<MovingBody> bodies =
-        moving_bodies(kNoModel, poses_, options_.bodies, header.floor);
-    const BodiesAcross how{
-        bodies, boxes_, {options_.forward, options_.up}, header.radius, header.between_poses};
-    std::vector<PartAcross> parts(tallies.size());
+  template <typename Rows>
+  void add_touched(const Rows& rows, std::span<const std::uint32_t> of_row, SharedLocks& locks) {
+    in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) {
+        if (of_row[i] == 0) continue;
+        const Conflict& conflict = out_.listed[of_row[i] - 1];
+        if (rows.first_pose[i] != conflict.first_pose) continue;
+        if (body_of(rows, i) != conflict.first_body) continue;
+        TouchedFirst& touched = touched_[of_row[i] - 1];
+        const Vec3 there = touched.pose == nullptr ? Vec3{}
+                                                   : ahead_left_up(rows.xyz[i], *touched.pose,
+                                                                   options_.forward, options_.up);
+        locks.hold(of_row[i], [&] {
+          if (rows.source[i] == touched.source) touched.place = rows.xyz[i];
+          touched.seen.extend(there);
+        });
+      }
+    });
+  }
+
+  static void add_classes(std::span<const std::uint8_t> point_class,
+                          std::span<const std::uint32_t> of_row,
+                          std::map<std::uint64_t, std::uint64_t>& classes) {
+    auto known = classes.end();
+    for (std::size_t i = 0; i < point_class.size(); ++i) {
+      if (of_row[i] == 0) continue;
+      const std::uint64_t key = std::uint64_t{of_row[i]} << 8 | point_class[i];
+      if (known == classes.end() || known->first != key) known = classes.try_emplace(key).first;
+      ++known->second;
+    }
+  }
+
+  /// Whether depths are taken from the rows, because exact ones of solids are not known.
+  bool has_depths() const {
+    return header_.depth && !(header_.model_solids > 0 && header_.clearance > 0);
+  }
+
+  /// Of equally deep points the first one decides, which has the least source.
+  static void add_depth(double depth, std::uint64_t source, Conflict& conflict) {
+    if (source == Collisions::kNoPoint || (conflict.depth && depth <= *conflict.depth)) return;
+    conflict.depth = depth;
+    conflict.depth_source = source;
+  }
+
+  /// Finds what depends on where all points of each conflict lie: shifts and trims.
+  void look_at_places() {
+    const std::vector<std::size_t> first = order_by_conflict();
+    std::vector<std::optional<PointBlocks>> trees(out_.listed.size());
+    const auto make_trees = [&](std::uint64_t Conflict::*points) {
+      for_each_parallel(trees.size(), [&](std::size_t i) {
+        const std::span of = std::span(quanta_).subspan(first[i], out_.listed[i].*points);
+        trees[i].reset();
+        if (!of.empty() && !progress_.stop_requested()) trees[i].emplace(header_.quantisation, of);
+      });
+      throw_if_stopped(progress_);
+    };
+    make_trees(&Conflict::colliding);
+    if (out_.knows_shifts) add_shifts(trees);
+    if (out_.near_points > 0) make_trees(&Conflict::points);
+    if (out_.knows_trims) add_trims(trees);
+  }
+
+  /// Sorts the points by their conflicts; those of a conflict stay in the order of their rows, so
+  /// that near ones are the last. Returns where the points of each conflict begin.
+  std::vector<std::size_t> order_by_conflict() {
+    std::vector<std::size_t> first{0};
+    for (const Conflict& conflict : out_.listed) first.push_back(first.back() + conflict.points);
+    std::vector<std::size_t> next = first;
+    std::vector<std::uint32_t> place;
+    place.reserve(of_row_.size());
+    for (const std::uint32_t id : of_row_) {
+      place.push_back(static_cast<std::uint32_t>(next[id == 0 ? first.size() - 1 : id - 1]++));
+    }
+    for (std::uint32_t i = 0; i < place.size(); ++i) {
+      while (place[i] != i) {
+        const std::uint32_t to = place[i];
+        std::swap(quanta_[i], quanta_[to]);
+        std::swap(place[i], place[to]);
+      }
+    }
+    return first;
+  }
+
+  /// Finds the shifts that free each conflict from all of its colliding points.
+  void add_shifts(std::span<const std::optional<PointBlocks>> trees) {
+    const double most = kMostOwnShift / metre_;
+    progress_.begin("shifts", out_.listed.size(), "conflicts");
+    std::vector<PointsToFree> sets;
+    std::uint64_t pairs = 0;
     for (const Conflict& conflict : out_.listed) {
-      parts[conflict.id - 1] = {conflict.first_body.value_or(0), conflict.first_pose,
-                                end_of(conflict.last_pose)};
+      const auto& tree = trees[conflict.id - 1];
+      sets.push_back({tree ? &*tree : nullptr, conflict.first_pose, end_of(conflict.last_pose)});
+      const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
+      pairs += conflict.colliding * poses;
     }
-    find_across_bodies(*grid_, groups_, part_of_row, header.quantisation, how, parts, progress_);
-    for (Conflict& conflict : out_.listed) {
-      const PartAcross& part = parts[conflict.id - 1];
-      set_trims(part.found, how.box_from_floor(part.body), how.whole_box(part.body), header.radius,
-                conflict);
+    const LeastShift shifts(bodies_, poses_, direction_to_left(options_.forward, options_.up),
+                            header_.radius, header_.between_poses, pairs, options_.threads);
+    const std::vector<SideShifts> free = shifts.least(sets, most, progress_);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      Conflict& conflict = out_.listed[i];
+      if (conflict.colliding == 0) continue;
+      // The points collide as it is, so a shift of 0 says only that the steps between poses, at
+      // which shifts are tried, missed it.
+      const auto known = [](std::optional<double> shift) {
+        return shift && *shift > 0 ? shift : std::nullopt;
+      };
+      conflict.own_shift_left = known(free[i].left);
+      conflict.own_shift_right = known(free[i].right);
+    }
+    progress_.end();
+  }
+
+  /// Sets the trims and the sides.
+  void add_trims(std::span<const std::optional<PointBlocks>> trees) {
+    const BodiesAcross how{
+        bodies_, boxes_, {options_.forward, options_.up}, header_.radius, header_.between_poses};
+    std::vector<PointsBeside> points;
+    for (const Conflict& conflict : out_.listed) {
+      points.push_back({*trees[conflict.id - 1], conflict.first_body.value_or(0),
+                        conflict.first_pose, end_of(conflict.last_pose)});
+    }
+    const std::vector<AcrossBody> found = find_across_bodies(how, points, progress_);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      set_trims(found[i], how.box_from_floor(points[i].body), how.whole_box(points[i].body),
+                header_.radius, out_.listed[i]);
     }
   }
 
-  void add_distances(const std::vector<std::uint32_t>& conflict_of_row) {
-    if (!(reader_.header().clearance > 0)) return;
-    const auto least =
-        least_distances(reader_, points_.source, conflict_of_row, out_.listed.size(), progress_);
+  void add_distances() {
+    if (!(header_.clearance > 0)) return;
+    NearestPoints nearest(out_.listed.size());
+    const std::span<const std::uint32_t> of_row = of_row_;
+    join_distances(reader_,
+                   {{{reader_.column(&Collisions::source), of_row.first(out_.colliding_points)},
+                     {reader_.column(&Nearby::source), of_row.subspan(out_.colliding_points)}}},
+                   nearest, progress_);
+    const std::vector<ConflictDistance> least = nearest.take();
     for (Conflict& conflict : out_.listed) {
       const ConflictDistance& found = least[conflict.id];
-      if (reader_.header().model_solids > 0) {
+      if (header_.model_solids > 0) {
         conflict.depth = std::max(0.0, -found.distance);
         conflict.points_inside = found.inside;
       }
@@ -600,74 +771,18 @@ class ConflictSearch {
       conflict.nearest_source = found.source;
       conflict.nearest_point = found.xyz;
       if (found.body) conflict.body = found.body;
-      conflict.encroachment = reader_.header().radius - found.distance;
+      conflict.encroachment = header_.radius - found.distance;
       conflict.encroachment_is = bound_of(conflict);
     }
   }
 
-  /// Sets the greatest depth of each conflict where the result has depths, unless exact ones of
-  /// solids are known. Of equally deep points the first row decides, which has the least source.
-  void add_depths(std::span<const std::uint32_t> conflict_of_row) {
-    const ResultHeader& header = reader_.header();
-    if (!header.depth || (header.model_solids > 0 && header.clearance > 0)) return;
-    progress_.begin("depths", reader_.collisions(), "points");
-    const auto is_near = [&](std::size_t row) {
-      return !points_.kind.empty() && points_.kind[row] == CollidingPoints::kNear;
-    };
-    std::size_t row = 0;
-    RowStream<Collisions> stream(reader_);
-    for (Collisions rows; stream.read(rows);) {
-      throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        while (is_near(row)) ++row;
-        const std::uint32_t id = conflict_of_row[row];
-        if (id == 0 || rows.depth_source[i] == Collisions::kNoPoint) continue;
-        Conflict& conflict = out_.listed[id - 1];
-        if (conflict.depth && rows.depth[i] <= *conflict.depth) continue;
-        conflict.depth = rows.depth[i];
-        conflict.depth_source = rows.depth_source[i];
-      }
-      progress_.advance(rows.size());
-    }
-    progress_.end();
-  }
-
   /// Whether the encroachment is exact: of a solid, and of what is certainly inside one.
   Bound bound_of(const Conflict& conflict) const {
-    const bool is_of_bodies = !reader_.header().bodies.empty();
-    const bool is_solid = !is_of_bodies ? reader_.header().model_solids > 0
+    const bool is_of_bodies = !header_.bodies.empty();
+    const bool is_solid = !is_of_bodies ? header_.model_solids > 0
                                         : !options_.bodies.empty() && conflict.body &&
                                               options_.bodies[*conflict.body].model.is_solid();
     return is_solid || *conflict.least_distance < 0 ? Bound::kExact : Bound::kAtLeast;
-  }
-
-  void count_colliding(std::span<const std::uint32_t> conflict_of_row) {
-    for (Conflict& conflict : out_.listed) conflict.colliding = conflict.points;
-    for (std::size_t row = 0; row < points_.kind.size(); ++row) {
-      const std::uint32_t id = conflict_of_row[row];
-      if (id != 0 && points_.kind[row] == CollidingPoints::kNear) --out_.listed[id - 1].colliding;
-    }
-  }
-
-  /// Counts the points of each class, and finds the class that most points of each conflict have.
-  void add_classes(std::span<const std::uint32_t> conflict_of_row) {
-    count_classes(points_.point_class, out_.classes);
-    std::vector<std::uint64_t> keys;  // of each point its conflict and, in the low byte, its class
-    for (std::size_t row = 0; row < points_.point_class.size(); ++row) {
-      const std::uint64_t id = conflict_of_row[row];
-      if (id != 0) keys.push_back(id << 8 | points_.point_class[row]);
-    }
-    tbb::parallel_sort(keys);
-    for (auto first = keys.begin(); first != keys.end();) {
-      const auto end = std::upper_bound(first, keys.end(), *first);
-      const auto count = static_cast<std::uint64_t>(end - first);
-      Conflict& conflict = out_.listed[(*first >> 8) - 1];
-      if (count > conflict.main_class_points.value_or(0)) {
-        conflict.main_class = static_cast<std::uint32_t>(*first & 0xff);
-        conflict.main_class_points = count;
-      }
-      first = end;
-    }
   }
 
   void complete(Conflict& conflict) const {
@@ -678,7 +793,7 @@ class ConflictSearch {
     const std::uint32_t at = conflict.nearest_pose.value_or(conflict.first_pose);
     const Pose* pose = pose_of(conflict.body, at);
     if (pose == nullptr) return;
-    const Vec3 place = conflict.nearest_point.value_or(first_places_[conflict.id - 1]);
+    const Vec3 place = conflict.nearest_point.value_or(touched_[conflict.id - 1].place);
     const Vec3 there = ahead_left_up(place, *pose, options_.forward, options_.up);
     if (!std::isfinite(there.x) || !std::isfinite(there.y) || !std::isfinite(there.z)) return;
     conflict.lateral = there.y;
@@ -712,92 +827,23 @@ class ConflictSearch {
     return body ? pose_at(options_.bodies[*body], at) : nullptr;
   }
 
-  /// Finds the shifts that free each conflict from all of its points.
-  void add_shifts(PointsOfConflicts points) {
-    if (!out_.knows_shifts) return;
-    const Model& model = options_.model != nullptr ? *options_.model : kNoModel;
-    const std::vector<MovingBody> bodies =
-        moving_bodies(model, poses_, options_.bodies, reader_.header().floor);
-    const double most = kMostOwnShift / metre_;
-    progress_.begin("shifts", out_.listed.size(), "conflicts");
-    std::vector<PointsToFree> sets;
-    std::uint64_t pairs = 0;
-    for (const Conflict& conflict : out_.listed) {
-      sets.push_back({points.of(conflict.id), conflict.first_pose, end_of(conflict.last_pose)});
-      const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
-      pairs += sets.back().points.size() * poses;
-    }
-    const LeastShift shifts(bodies, poses_, direction_to_left(options_.forward, options_.up),
-                            reader_.header().radius, reader_.header().between_poses, pairs,
-                            options_.threads);
-    const std::vector<SideShifts> free =
-        shifts.least(reader_.header().quantisation, sets, most, progress_);
-    for (std::size_t i = 0; i < free.size(); ++i) {
-      Conflict& conflict = out_.listed[i];
-      if (conflict.colliding == 0) continue;
-      // The points collide as it is, so a shift of 0 says only that the steps between poses, at
-      // which shifts are tried, missed it.
-      const auto known = [](std::optional<double> shift) {
-        return shift && *shift > 0 ? shift : std::nullopt;
-      };
-      conflict.own_shift_left = known(free[i].left);
-      conflict.own_shift_right = known(free[i].right);
-    }
-    progress_.end();
-  }
-
-  /// The colliding points of each conflict, which have to be freed, in no particular order. Near
-  /// points need no shift.
-  PointsOfConflicts points_to_free(std::span<const std::uint32_t> conflict_of_row) const {
-    PointsOfConflicts out;
-    if (!out_.knows_shifts) return out;
-    const auto conflict_of = [&](const GroupedPoint& p) {
-      const bool is_near = !points_.kind.empty() && points_.kind[p.row] == CollidingPoints::kNear;
-      return is_near ? 0 : conflict_of_row[p.row];
-    };
-    // Visits the points of each cell that belong to one conflict and follow one another, in no
-    // particular order.
-    const auto for_runs = [&](auto visit) {
-      using Range = tbb::blocked_range<std::uint32_t>;
-      for_each_parallel(Range(0, grid_->cells(), 64), [&](const Range& cells) {
-        for (std::uint32_t cell = cells.begin(); cell != cells.end(); ++cell) {
-          if (PointGroups::is_small(groups_.of_cell[cell])) continue;
-          const std::span<const GroupedPoint> all = std::as_const(*grid_).points(cell);
-          for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end) {
-            const std::uint32_t id = conflict_of(all[begin]);
-            while (end < all.size() && conflict_of(all[end]) == id) ++end;
-            if (id != 0) visit(id - 1, all.subspan(begin, end - begin));
-          }
-        }
-      });
-    };
-    std::vector<std::atomic<std::size_t>> next(out_.listed.size());
-    for_runs([&](std::uint32_t i, std::span<const GroupedPoint> run) { next[i] += run.size(); });
-    out.first.push_back(0);
-    for (std::atomic<std::size_t>& count : next) {
-      out.first.push_back(out.first.back() + count.exchange(out.first.back()));
-    }
-    out.points.resize(out.first.back());
-    for_runs([&](std::uint32_t i, std::span<const GroupedPoint> run) {
-      std::size_t at = next[i].fetch_add(run.size());
-      for (const GroupedPoint& p : run) std::ranges::copy(p.q, out.points[at++].q);
-    });
-    return out;
-  }
-
   const ResultReader& reader_;
+  const ResultHeader& header_;
   const std::vector<Pose>& poses_;
   const ConflictOptions& options_;
+  const std::vector<MovingBody> bodies_;
   const std::vector<Box> boxes_;
   const double metre_;  ///< length of the environment's unit
   Progress& progress_;
   const ConflictMemory memory_;
   const std::vector<double> chainage_;
-  CollidingPoints points_;
-  std::optional<CellGrid> grid_;
+  std::vector<QuantumPoint> quanta_;  ///< of each row; at the end by conflict
+  /// With an error budget, whether each row is certain, and after group() whether it is one of a
+  /// certain group
+  std::vector<bool> certain_;
   PointGroups groups_;
-  /// For each conflict, the place of the first point that is touched.
-  std::vector<Vec3> first_places_;
+  std::vector<std::uint32_t> of_row_;  ///< the conflict of each row, 0 for none
+  std::vector<TouchedFirst> touched_;  ///< of each conflict
   Conflicts out_;
 };
 

@@ -5,13 +5,12 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <unordered_map>
 #include <vector>
 
 #include "clearway/conflicts.hpp"
 #include "clearway/vec3.hpp"
-#include "io/result/result.hpp"
+#include "findings/row_pieces.hpp"
 
 /// The points of a result with their conflicts, and points found by place.
 namespace clearway {
@@ -110,25 +109,19 @@ struct PointRow : NumberedPoint {
   std::uint32_t first_pose, last_pose;
 };
 
-template <typename Rows, typename Visit>
-void for_each_row(const GroupedResult& of, std::span<const std::uint32_t> conflict_of,
-                  Visit visit) {
-  RowStream<Rows> stream(of.result.reader());
-  std::size_t row = 0;
-  for (Rows rows; stream.read(rows);) {
-    for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-      std::uint32_t last = rows.first_pose[i];
-      if constexpr (requires { rows.last_pose; }) last = rows.last_pose[i];
-      visit(PointRow{{rows.xyz[i], conflict_of[row]}, rows.source[i], rows.first_pose[i], last});
-    }
-  }
-}
-
 /// Calls visit(row) for each colliding point of a result, and for each near one.
 template <typename Visit>
 void for_each_point(const GroupedResult& of, Visit visit) {
-  for_each_row<Collisions>(of, of.conflict_of, visit);
-  for_each_row<Nearby>(of, of.conflict_of_near, visit);
+  const std::size_t colliding = of.result.reader().collisions();
+  for_each_rows(of.result.reader(), [&](const auto& rows, std::size_t first) {
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const std::size_t row = first + i;
+      const std::uint32_t conflict =
+          row < colliding ? of.conflict_of[row] : of.conflict_of_near[row - colliding];
+      visit(PointRow{
+          {rows.xyz[i], conflict}, rows.source[i], rows.first_pose[i], last_pose_of(rows, i)});
+    }
+  });
 }
 
 }  // namespace clearway

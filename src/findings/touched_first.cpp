@@ -1,7 +1,5 @@
 #include "findings/touched_first.hpp"
 
-#include <tbb/spin_mutex.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,8 +7,6 @@
 #include <utility>
 
 #include "core/geometry/axes.hpp"
-#include "core/util/tsan_annotations.hpp"
-#include "io/files/parallel_loop.hpp"
 
 namespace clearway {
 namespace {
@@ -80,37 +76,6 @@ PathStretches::PathStretches(const std::vector<double>& chainage, double split) 
     const bool cut = std::floor(chainage[i] / split) != std::floor(chainage[i - 1] / split);
     number_[i] = number_[i - 1] + (cut ? 1 : 0);
   }
-}
-
-void find_touched_first(const CellGrid& grid, const PointGroups& groups,
-                        const CollidingPoints& points, std::span<const std::uint32_t> part_of_row,
-                        const Quantisation& quantisation, const AheadLeftUp& axes,
-                        std::vector<TouchedFirst>& parts, Progress& progress) {
-  using Range = tbb::blocked_range<std::uint32_t>;
-  std::array<tbb::spin_mutex, 64> locks;
-  const auto add = [&](const GroupedPoint& p) {
-    const std::uint32_t number = part_of_row[p.row] - 1;
-    TouchedFirst& part = parts[number];
-    if (points.first_pose[p.row] != part.first_pose) return;
-    if (part.body && !points.body.empty() && points.body[p.row] != *part.body) return;
-    const Vec3 place = position(quantisation, p.q[0], p.q[1], p.q[2]);
-    const Vec3 there =
-        part.pose != nullptr ? ahead_left_up(place, *part.pose, axes.forward, axes.up) : Vec3{};
-    tbb::spin_mutex& lock = locks[number % locks.size()];
-    const tbb::spin_mutex::scoped_lock held(lock);
-    acquire(&lock);
-    if (p.row == part.row) part.place = place;
-    part.seen.extend(there);
-    release(&lock);
-  };
-  for_each_parallel(Range(0, grid.cells(), 64), [&](const Range& range) {
-    if (progress.stop_requested()) return;
-    for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
-      if (PointGroups::is_small(groups.of_cell[cell])) continue;
-      for (const GroupedPoint& p : grid.points(cell)) add(p);
-    }
-  });
-  throw_if_stopped(progress);
 }
 
 }  // namespace clearway

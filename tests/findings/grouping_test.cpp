@@ -3,6 +3,7 @@
 
 #include "findings/colliding_spacing.hpp"
 #include "findings/conflict_fixture.hpp"
+#include "findings/group/point_groups.hpp"
 #include "findings/match_conflicts.hpp"
 #include "support/catch.hpp"
 #include "support/compare.hpp"
@@ -56,6 +57,36 @@ TEST_CASE("random points are grouped as all pairs are, with any threads and scal
     }
   }
   CHECK(groups > 3 * scenes);  // not all points are in one group
+}
+
+TEST_CASE("points are grouped alike however few are at work at the same time") {
+  Random random(2);
+  for (const std::int32_t extent : {30, 400, 5000}) {
+    std::vector<QuantumPoint> points;
+    for (const auto& q : random_quanta(random, 1000, extent))
+      points.push_back({{q[0], q[1], q[2]}});
+    const Quantisation steps{{0.001, 0.001, 0.001}, {0, 0, 0}};
+    const Neighbourhood near(steps, 0.05 * extent * 0.001);
+    NoProgress progress;
+    std::vector<bool> only;
+    for (std::size_t i = 0; i < points.size(); ++i) only.push_back(below(random, 3) > 0);
+    for (const std::vector<bool>* of : {static_cast<const std::vector<bool>*>(nullptr),
+                                        static_cast<const std::vector<bool>*>(&only)}) {
+      const PointGroups whole = group_points(points, near, 3, progress, {}, of);
+      for (const std::uint64_t at_work : {1, 50, 700}) {
+        std::uint64_t most = 0;  // of a layer that is not divided
+        const GroupingLimit limit{at_work, [&](std::uint64_t count) {
+                                    CHECK(count > at_work);
+                                    most = std::max(most, count);
+                                  }};
+        const PointGroups found = group_points(points, near, 3, progress, limit, of);
+        CHECK(found.of_point == whole.of_point);
+        check_equal(found.count, whole.count);
+        check_equal(found.small_points, whole.small_points);
+        CHECK(most < points.size());
+      }
+    }
+  }
 }
 
 TEST_CASE("points exactly at the gap are neighbours, wherever the scan is") {

@@ -2,6 +2,7 @@
 // nothing in common with the search but the squared distance.
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <numbers>
 
@@ -49,15 +50,18 @@ struct ShiftScene {
 
   std::vector<SideShifts> shifts(int threads) const {
     std::vector<std::vector<QuantumPoint>> copy = sets;
-    std::vector<PointsToFree> to_free;
-    for (std::size_t i = 0; i < copy.size(); ++i) {
-      to_free.push_back({copy[i], ranges[i].first, ranges[i].second});
-    }
     return in_threads(threads, [&] {
+      std::deque<PointBlocks> trees;
+      std::vector<PointsToFree> to_free;
+      for (std::size_t i = 0; i < copy.size(); ++i) {
+        const bool any = !copy[i].empty();
+        to_free.push_back({any ? &trees.emplace_back(steps, copy[i]) : nullptr, ranges[i].first,
+                           ranges[i].second});
+      }
       const std::vector<MovingBody> moving = bodies();
       const LeastShift least(moving, path, left, radius, ways, pairs, threads);
       NoProgress progress;
-      return least.least(steps, to_free, most, progress);
+      return least.least(to_free, most, progress);
     });
   }
 };

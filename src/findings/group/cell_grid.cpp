@@ -1,9 +1,9 @@
 #include "findings/group/cell_grid.hpp"
 
-#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -16,21 +16,7 @@ namespace {
 using Range = tbb::blocked_range<std::size_t>;
 constexpr std::size_t kGrain = 1 << 16;
 
-QuantumPoint least_of(std::span<const QuantumPoint> points) {
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  const auto smaller = [](const QuantumPoint& a, const QuantumPoint& b) {
-    return QuantumPoint{
-        {std::min(a.q[0], b.q[0]), std::min(a.q[1], b.q[1]), std::min(a.q[2], b.q[2])}};
-  };
-  return tbb::parallel_reduce(
-      Range(0, points.size(), kGrain), QuantumPoint{{kMost, kMost, kMost}},
-      [&](const Range& range, QuantumPoint least) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) least = smaller(least, points[i]);
-        return least;
-      },
-      smaller);
-}
-
+/// Points whose q holds the place of their cell until all are sorted: z, y, x.
 GridPlace place_of(const GroupedPoint& unmade) {
   return {static_cast<std::uint32_t>(unmade.q[0]), static_cast<std::uint32_t>(unmade.q[1]),
           static_cast<std::uint32_t>(unmade.q[2])};
@@ -43,47 +29,39 @@ bool before(const GroupedPoint& a, const GroupedPoint& b) {
 
 }  // namespace
 
-void CellGrid::sort(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood) {
-  origin_ = least_of(points);
-  points_.resize(points.size());
+CellGrid::CellGrid(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
+                   const QuantumPoint& origin, std::size_t count,
+                   const std::function<bool(std::size_t)>& takes)
+    : points_(count) {
   const auto& edge = neighbourhood.cell();
+  std::atomic<std::size_t> next{0};
   for_each_parallel(Range(0, points.size(), kGrain), [&](const Range& range) {
+    std::vector<GroupedPoint> own;
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
-      GroupedPoint& out = points_[i];
-      for (int k = 0; k < 3; ++k) {
-        const auto d = static_cast<std::uint64_t>(std::int64_t{points[i].q[k]} - origin_.q[k]);
-        out.q[2 - k] = static_cast<std::int32_t>(d / edge[static_cast<std::size_t>(k)]);
+      if (!takes(i)) continue;
+      GroupedPoint& out = own.emplace_back(GroupedPoint{{}, static_cast<std::uint32_t>(i)});
+      for (std::size_t k = 0; k < 3; ++k) {
+        out.q[2 - k] = static_cast<std::int32_t>(layer_of(points[i].q[k], origin.q[k], edge[k]));
       }
-      out.row = static_cast<std::uint32_t>(i);
     }
+    const std::size_t begin = next.fetch_add(own.size());
+    std::ranges::copy(own, points_.begin() + static_cast<std::ptrdiff_t>(begin));
   });
   tbb::parallel_sort(points_.begin(), points_.end(), before);
-}
-
-std::uint64_t CellGrid::count_cells() const {
-  return tbb::parallel_reduce(
-      Range(0, points_.size(), kGrain), std::uint64_t{0},
-      [&](const Range& range, std::uint64_t count) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-          if (i == 0 || place_of(points_[i]) != place_of(points_[i - 1])) ++count;
-        }
-        return count;
-      },
-      std::plus<>());
-}
-
-void CellGrid::make_cells(std::span<const QuantumPoint> points) {
-  const std::uint64_t cells = count_cells();
+  const auto begins_cell = [&](std::size_t i) {
+    return i == 0 || place_of(points_[i]) != place_of(points_[i - 1]);
+  };
+  std::size_t cells = 0;
+  for (std::size_t i = 0; i < count; ++i) cells += begins_cell(i) ? 1 : 0;
   places_.reserve(cells);
   first_.reserve(cells + 1);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const GridPlace place = place_of(points_[i]);
-    if (!places_.empty() && place == places_.back()) continue;
-    places_.push_back(place);
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!begins_cell(i)) continue;
+    places_.push_back(place_of(points_[i]));
     first_.push_back(static_cast<std::uint32_t>(i));
   }
-  first_.push_back(static_cast<std::uint32_t>(points_.size()));
-  for_each_parallel(Range(0, points_.size(), kGrain), [&](const Range& range) {
+  first_.push_back(static_cast<std::uint32_t>(count));
+  for_each_parallel(Range(0, count, kGrain), [&](const Range& range) {
     for (std::size_t i = range.begin(); i < range.end(); ++i) {
       std::copy_n(points[points_[i].row].q, 3, points_[i].q);
     }
@@ -132,16 +110,6 @@ const GroupedPoint& nearest(const Neighbourhood& neighbourhood,
 
 }  // namespace
 
-bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
-                    std::span<const GroupedPoint> b) {
-  for (const GroupedPoint& p : a) {
-    for (const GroupedPoint& q : b) {
-      if (are_neighbours(neighbourhood, p, q)) return true;
-    }
-  }
-  return false;
-}
-
 Nearness compare_cells(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
                        std::span<const GroupedPoint> b) {
   const std::size_t pairs = a.size() * b.size();
@@ -189,8 +157,8 @@ std::uint64_t floor_of_root(Wide squared) {
 Neighbourhood::Neighbourhood(const Quantisation& quantisation, double gap)
     : exact_(quantisation.scale[0] == quantisation.scale[1] &&
              quantisation.scale[1] == quantisation.scale[2]),
+      quantisation_(quantisation),
       squared_gap_(gap * gap) {
-  for (int k = 0; k < 3; ++k) step_[static_cast<std::size_t>(k)] = quantisation.scale[k];
   if (exact_) {
     squared_ = squared_steps(std::min(gap / quantisation.scale[0], kAllSteps));
     reach_ = floor_of_root(squared_);
@@ -201,7 +169,8 @@ Neighbourhood::Neighbourhood(const Quantisation& quantisation, double gap)
 
 void Neighbourhood::choose_cell(double gap) {
   for (std::size_t k = 0; k < 3; ++k) {
-    const double most = std::min(std::floor(gap / (std::sqrt(3.0) * step_[k])), kLongestEdge);
+    const double most =
+        std::min(std::floor(gap / (std::sqrt(3.0) * quantisation_.scale[k])), kLongestEdge);
     cell_[k] = static_cast<std::uint64_t>(most) + 1;
   }
   while (!within(cell_[0] - 1, cell_[1] - 1, cell_[2] - 1)) {

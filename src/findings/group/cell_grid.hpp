@@ -1,13 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <tuple>
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
+#include "findings/point_blocks.hpp"
 
 namespace clearway {
 
@@ -26,9 +29,9 @@ class Neighbourhood {
       if (dx > reach_ || dy > reach_ || dz > reach_) return false;
       return dx * dx + dy * dy + dz * dz <= static_cast<std::uint64_t>(squared_);
     }
-    const double x = static_cast<double>(dx) * step_[0];
-    const double y = static_cast<double>(dy) * step_[1];
-    const double z = static_cast<double>(dz) * step_[2];
+    const double x = static_cast<double>(dx) * step(0);
+    const double y = static_cast<double>(dy) * step(1);
+    const double z = static_cast<double>(dz) * step(2);
     return x * x + y * y + z * z <= squared_gap_;
   }
 
@@ -41,8 +44,9 @@ class Neighbourhood {
     return within(least(x, 0), least(y, 1), least(z, 2));
   }
 
+  const Quantisation& quantisation() const { return quantisation_; }
   /// The scale of an axis, in the unit of the gap; for guesses only.
-  double step(int axis) const { return step_[static_cast<std::size_t>(axis)]; }
+  double step(int axis) const { return quantisation_.scale[axis]; }
 
  private:
   void choose_cell(double gap);
@@ -57,18 +61,13 @@ class Neighbourhood {
   unsigned __int128 squared_ = 0;  ///< the greatest squared difference
   /// The greatest difference on one axis that is within the gap; not used where `wide_`.
   std::uint64_t reach_ = 0;
-  std::array<double, 3> step_{};
+  Quantisation quantisation_;
   double squared_gap_ = 0;
   std::array<std::uint64_t, 3> cell_{};
   std::array<std::uint32_t, 3> cells_away_{};
 };
 
-/// The stored integers of a point, one on each axis.
-struct QuantumPoint {
-  std::int32_t q[3];
-};
-
-/// A point and the row of the result that it comes from.
+/// A point and its number among all points.
 struct GroupedPoint {
   std::int32_t q[3];
   std::uint32_t row;
@@ -87,61 +86,51 @@ struct GridPlace {
 /// neighbours. Only cells with points are kept. Runs in the caller's arena of oneTBB.
 class CellGrid {
  public:
-  static constexpr std::uint64_t kBytesOfPoint = sizeof(GroupedPoint);
-  static constexpr std::uint64_t kBytesOfCell = sizeof(GridPlace) + sizeof(std::uint32_t);
+  /// The bytes of a point that is alone in its cell.
+  static constexpr std::uint64_t kBytesOfPoint =
+      sizeof(GroupedPoint) + sizeof(GridPlace) + sizeof(std::uint32_t);
 
-  /// points: fewer than 2^32 - 1, by row. check_cells(count) is called before memory is taken for
-  /// that many cells.
-  template <typename CheckCells>
+  /// A grid that begins at `origin`, the smallest stored integer of all points on each axis, of the
+  /// `count` points for whose number takes(number) is true. points: fewer than 2^32 - 1.
   CellGrid(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
-           CheckCells check_cells) {
-    sort(points, neighbourhood);
-    check_cells(count_cells());
-    make_cells(points);
-  }
+           const QuantumPoint& origin, std::size_t count,
+           const std::function<bool(std::size_t)>& takes);
 
   std::uint32_t cells() const { return static_cast<std::uint32_t>(places_.size()); }
-  const GridPlace& place(std::uint32_t cell) const { return places_[cell]; }
   std::span<const GridPlace> places() const { return places_; }
   std::span<const GroupedPoint> points(std::uint32_t cell) const {
     return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
   }
-  /// The points of a cell, whose order the caller may change.
-  std::span<GroupedPoint> points(std::uint32_t cell) {
-    return {points_.data() + first_[cell], first_[cell + 1] - first_[cell]};
-  }
-  /// The smallest stored integer of all points on each axis, where the cell (0, 0, 0) begins.
-  const QuantumPoint& origin() const { return origin_; }
 
  private:
-  void sort(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood);
-  std::uint64_t count_cells() const;
-  void make_cells(std::span<const QuantumPoint> points);
-
-  QuantumPoint origin_{};
-  /// Until make_cells(), q holds the place of the point's cell: z, y, x.
   std::vector<GroupedPoint> points_;
   std::vector<GridPlace> places_;
   /// The first point of each cell, and at the end the number of all points.
   std::vector<std::uint32_t> first_;
 };
 
-enum class Nearness { kNear, kFar, kOpen };
-
-/// The absolute difference of two stored integers.
-inline std::uint64_t difference_of(const std::int32_t a, const std::int32_t b) {
-  return static_cast<std::uint64_t>(a < b ? std::int64_t{b} - a : std::int64_t{a} - b);
+/// The layer of a coordinate of a grid that begins at `origin` and has cells with this edge.
+inline std::uint64_t layer_of(std::int32_t q, std::int32_t origin, std::uint64_t edge) {
+  return static_cast<std::uint64_t>(std::int64_t{q} - origin) / edge;
 }
 
-inline bool are_neighbours(const Neighbourhood& neighbourhood, const GroupedPoint& a,
-                           const GroupedPoint& b) {
+enum class Nearness { kNear, kFar, kOpen };
+
+template <typename Point>
+bool are_neighbours(const Neighbourhood& neighbourhood, const Point& a, const Point& b) {
   return neighbourhood.within(difference_of(a.q[0], b.q[0]), difference_of(a.q[1], b.q[1]),
                               difference_of(a.q[2], b.q[2]));
 }
 
-/// Whether a point of one cell has a neighbour in the other, found by comparing all pairs.
-bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const GroupedPoint> a,
-                    std::span<const GroupedPoint> b);
+/// Whether any of some points has a neighbour among others, found by comparing all pairs.
+template <typename Point>
+bool any_neighbours(const Neighbourhood& neighbourhood, std::span<const Point> a,
+                    std::span<const Point> b) {
+  return std::ranges::any_of(a, [&](const Point& p) {
+    return std::ranges::any_of(b,
+                               [&](const Point& q) { return are_neighbours(neighbourhood, p, q); });
+  });
+}
 
 /// Whether a point of one cell has a neighbour in the other, in a time proportional to the number
 /// of points, which may leave it open: few points are all compared with each other, and of many

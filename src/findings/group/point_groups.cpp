@@ -3,7 +3,9 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <utility>
@@ -16,50 +18,55 @@
 namespace clearway {
 namespace {
 
-/// A k-d tree over the points of a cell, which it puts into its own order.
-class PointTree {
+/// Disjoint sets of numbers that several threads may unite at the same time. The root of a set is
+/// its smallest number, in whatever order sets are united. Source: Anderson and Woll, Wait-free
+/// parallel algorithms for the union-find problem, 1991.
+class UnionFind {
  public:
-  static constexpr std::size_t kLeafPoints = 16;
-  /// The most bytes that a tree takes for each point.
-  static constexpr std::uint64_t kBytesOfPoint = 10;
+  explicit UnionFind(std::size_t count) : parent_(count) {
+    std::iota(parent_.begin(), parent_.end(), 0U);
+  }
 
-  /// neighbourhood: gives the scale of each axis, by which the axis to split is chosen. The points
-  /// outlive the tree.
-  PointTree(std::span<GroupedPoint> points, const Neighbourhood& neighbourhood);
+  std::uint32_t find(std::uint32_t i) {
+    for (;;) {
+      std::uint32_t above = parent(i).load(kRelaxed);
+      if (above == i) return i;
+      const std::uint32_t higher = parent(above).load(kRelaxed);
+      if (higher != above) parent(i).compare_exchange_weak(above, higher, kRelaxed);
+      i = higher;
+    }
+  }
 
-  /// Whether a point of one tree has a neighbour in the other. Pairs of nodes that are surely near
-  /// or surely far are not opened.
-  static bool any_neighbours(const Neighbourhood& neighbourhood, const PointTree& a,
-                             const PointTree& b) {
-    return near(neighbourhood, a, a.nodes_.front(), b, b.nodes_.front());
+  /// Whether two numbers are in one set. True is always right; false may be wrong while other
+  /// threads unite sets.
+  bool together(std::uint32_t a, std::uint32_t b) { return find(a) == find(b); }
+
+  void unite(std::uint32_t a, std::uint32_t b) {
+    for (;;) {
+      a = find(a);
+      b = find(b);
+      if (a == b) return;
+      if (a > b) std::swap(a, b);
+      std::uint32_t root = b;
+      if (parent(b).compare_exchange_strong(root, a, kRelaxed)) return;
+    }
+  }
+
+  /// The root of each number, for which the sets are given up.
+  std::vector<std::uint32_t> take_roots() {
+    for (std::uint32_t& above : parent_) above = parent_[above];  // which is complete already
+    return std::move(parent_);
   }
 
  private:
-  struct Node {
-    QuantumBox box;
-    std::uint32_t first, last;
-    /// The right child; the left one is the next node. 0 for a leaf.
-    std::uint32_t right;
-  };
-  static bool near(const Neighbourhood& neighbourhood, const PointTree& a, const Node& in_a,
-                   const PointTree& b, const Node& in_b);
-  void build(std::uint32_t first, std::uint32_t last, const Neighbourhood& neighbourhood);
-  std::span<const GroupedPoint> points(const Node& node) const;
-  const Node& left(const Node& node) const { return *(&node + 1); }
-  const Node& right(const Node& node) const { return nodes_[node.right]; }
-
-  std::span<GroupedPoint> points_;
-  std::vector<Node> nodes_;
-};
-
-QuantumBox box_of_points(std::span<const GroupedPoint> points) {
-  QuantumBox box{{points[0].q[0], points[0].q[1], points[0].q[2]},
-                 {points[0].q[0], points[0].q[1], points[0].q[2]}};
-  for (const GroupedPoint& p : points) {
-    box.extend(p.q);
+  // Parents only ever change to smaller numbers of the same set, and no other memory depends on
+  // them.
+  static constexpr auto kRelaxed = std::memory_order_relaxed;
+  std::atomic_ref<std::uint32_t> parent(std::uint32_t i) {
+    return std::atomic_ref<std::uint32_t>(parent_[i]);
   }
-  return box;
-}
+  std::vector<std::uint32_t> parent_;
+};
 
 double extent(const QuantumBox& box, const Neighbourhood& neighbourhood, int axis) {
   return (static_cast<double>(box.hi[axis]) - box.lo[axis]) * neighbourhood.step(axis);
@@ -80,41 +87,11 @@ std::uint64_t greatest_difference(const QuantumBox& a, const QuantumBox& b, int 
   return std::max(difference_of(a.lo[k], b.hi[k]), difference_of(a.hi[k], b.lo[k]));
 }
 
-bool is_one_place(const QuantumBox& box) { return std::equal(box.lo, box.lo + 3, box.hi); }
-
-PointTree::PointTree(std::span<GroupedPoint> points, const Neighbourhood& neighbourhood)
-    : points_(points) {
-  nodes_.reserve(points.size() * 4 / kLeafPoints + 1);
-  build(0, static_cast<std::uint32_t>(points.size()), neighbourhood);
-}
-
-void PointTree::build(std::uint32_t first, std::uint32_t last, const Neighbourhood& neighbourhood) {
-  const std::size_t self = nodes_.size();
-  const QuantumBox box = box_of_points(points_.subspan(first, last - first));
-  nodes_.push_back({box, first, last, 0});
-  if (last - first <= kLeafPoints || is_one_place(box)) return;
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (extent(box, neighbourhood, k) > extent(box, neighbourhood, axis)) axis = k;
-  }
-  const std::uint32_t middle = first + (last - first) / 2;
-  std::nth_element(points_.begin() + first, points_.begin() + middle, points_.begin() + last,
-                   [axis](const GroupedPoint& a, const GroupedPoint& b) {
-                     return a.q[axis] != b.q[axis] ? a.q[axis] < b.q[axis] : a.row < b.row;
-                   });
-  build(first, middle, neighbourhood);
-  nodes_[self].right = static_cast<std::uint32_t>(nodes_.size());
-  build(middle, last, neighbourhood);
-}
-
-/// The points of a leaf, where points that are all at the same place count as one.
-std::span<const GroupedPoint> PointTree::points(const Node& node) const {
-  return points_.subspan(node.first, is_one_place(node.box) ? 1 : node.last - node.first);
-}
-
-bool PointTree::near(const Neighbourhood& neighbourhood, const PointTree& a, const Node& in_a,
-                     const PointTree& b, const Node& in_b) {
-  const QuantumBox &box_a = in_a.box, &box_b = in_b.box;
+/// Whether a point of one node has a neighbour in the other. Pairs of nodes that are surely near or
+/// surely far are not opened.
+bool near(const Neighbourhood& neighbourhood, const PointBlocks& a, std::uint32_t in_a,
+          const PointBlocks& b, std::uint32_t in_b) {
+  const QuantumBox &box_a = a.node(in_a).box, &box_b = b.node(in_b).box;
   if (!neighbourhood.within(least_difference(box_a, box_b, 0), least_difference(box_a, box_b, 1),
                             least_difference(box_a, box_b, 2))) {
     return false;
@@ -124,18 +101,18 @@ bool PointTree::near(const Neighbourhood& neighbourhood, const PointTree& a, con
                            greatest_difference(box_a, box_b, 2))) {
     return true;
   }
-  if (in_a.right == 0 && in_b.right == 0) {
-    return clearway::any_neighbours(neighbourhood, a.points(in_a), b.points(in_b));
+  if (a.is_block(in_a) && b.is_block(in_b)) {
+    return any_neighbours(neighbourhood, a.points(in_a), b.points(in_b));
   }
   const bool open_a =
-      in_b.right == 0 || (in_a.right != 0 && greatest_extent(box_a, neighbourhood) >=
-                                                 greatest_extent(box_b, neighbourhood));
+      b.is_block(in_b) || (!a.is_block(in_a) && greatest_extent(box_a, neighbourhood) >=
+                                                    greatest_extent(box_b, neighbourhood));
   if (open_a) {
-    return near(neighbourhood, a, a.left(in_a), b, in_b) ||
-           near(neighbourhood, a, a.right(in_a), b, in_b);
+    return near(neighbourhood, a, 2 * in_a + 1, b, in_b) ||
+           near(neighbourhood, a, 2 * in_a + 2, b, in_b);
   }
-  return near(neighbourhood, a, in_a, b, b.left(in_b)) ||
-         near(neighbourhood, a, in_a, b, b.right(in_b));
+  return near(neighbourhood, a, in_a, b, 2 * in_b + 1) ||
+         near(neighbourhood, a, in_a, b, 2 * in_b + 2);
 }
 
 using CellRange = tbb::blocked_range<std::uint32_t>;
@@ -208,113 +185,191 @@ class RowWalk {
   bool started_ = false;
 };
 
-/// Decides the pairs of cells that a first look left open, with a tree for each of their cells.
-class OpenPairs {
+/// The points of a cell in a tree of their own.
+class CellTree {
  public:
-  OpenPairs(CellGrid& grid, const Neighbourhood& neighbourhood, UnionFind& sets,
-            std::vector<Pair> pairs)
-      : grid_(grid), neighbourhood_(neighbourhood), sets_(sets), pairs_(std::move(pairs)) {
-    std::erase_if(pairs_, [&](const Pair& p) { return sets_.together(p.first, p.second); });
+  CellTree(std::span<const GroupedPoint> points, const Quantisation& quantisation)
+      : points_(copied(points)), blocks_(quantisation, points_) {}
+  CellTree(const CellTree&) = delete;
+  CellTree& operator=(const CellTree&) = delete;
+
+  const PointBlocks& blocks() const { return blocks_; }
+
+ private:
+  static std::vector<QuantumPoint> copied(std::span<const GroupedPoint> points) {
+    std::vector<QuantumPoint> out(points.size());
+    for (std::size_t i = 0; i < out.size(); ++i) std::ranges::copy(points[i].q, out[i].q);
+    return out;
   }
 
-  void decide(const Progress& progress) {
-    make_trees(progress);
-    for_each_parallel(pairs_.size(), [&](std::size_t i) {
-      const auto [a, b] = pairs_[i];
-      if (progress.stop_requested() || sets_.together(a, b)) return;
-      if (PointTree::any_neighbours(neighbourhood_, tree(a), tree(b))) sets_.unite(a, b);
+  std::vector<QuantumPoint> points_;
+  PointBlocks blocks_;
+};
+
+/// Unites the points of some layers of the grid that are neighbours, directly or through others.
+class LayerGroups {
+ public:
+  LayerGroups(const CellGrid& grid, const Neighbourhood& neighbourhood, UnionFind& sets,
+              Progress& progress)
+      : grid_(grid), neighbourhood_(neighbourhood), sets_(sets), progress_(progress) {}
+
+  void unite() {
+    for_each_parallel(CellRange(0, grid_.cells(), kCellGrain), [&](const CellRange& range) {
+      for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
+        for (const GroupedPoint& p : grid_.points(cell)) sets_.unite(first_of(cell), p.row);
+      }
     });
+    const std::vector<RowStep> rows = rows_in_reach(neighbourhood_);
+    progress_.begin("group", rows.size() * grid_.cells(), "cells");
+    for (const RowStep& step : rows) decide(look_along(step));
+    progress_.end();
   }
 
  private:
-  void make_trees(const Progress& progress) {
-    for (const auto& [a, b] : pairs_) {
-      cells_.push_back(a);
-      cells_.push_back(b);
-    }
-    std::sort(cells_.begin(), cells_.end());
-    cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
-    trees_.resize(cells_.size());
-    for_each_parallel(cells_.size(), [&](std::size_t i) {
-      if (!progress.stop_requested()) trees_[i].emplace(grid_.points(cells_[i]), neighbourhood_);
-    });
-    throw_if_stopped(progress);
-  }
-  const PointTree& tree(std::uint32_t cell) const {
-    const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
-    return *trees_[static_cast<std::size_t>(at - cells_.begin())];
+  /// The point that stands for all of its cell.
+  std::uint32_t first_of(std::uint32_t cell) const { return grid_.points(cell).front().row; }
+  bool together(std::uint32_t a, std::uint32_t b) {
+    return sets_.together(first_of(a), first_of(b));
   }
 
-  CellGrid& grid_;
+  /// Compares each cell with those of one row, and unites cells that hold neighbours. Returns the
+  /// pairs that stay open.
+  std::vector<Pair> look_along(const RowStep& step) {
+    tbb::enumerable_thread_specific<std::vector<Pair>> open;
+    for_each_parallel(CellRange(0, grid_.cells(), kCellGrain), [&](const CellRange& range) {
+      if (progress_.stop_requested()) return;
+      RowWalk walk(grid_, neighbourhood_, step);
+      for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
+        walk.visit(cell, [&](std::uint32_t other) {
+          if (together(cell, other)) return;
+          const Nearness found =
+              compare_cells(neighbourhood_, grid_.points(cell), grid_.points(other));
+          if (found == Nearness::kNear) sets_.unite(first_of(cell), first_of(other));
+          if (found == Nearness::kOpen) open.local().emplace_back(cell, other);
+        });
+      }
+      progress_.advance(range.size());
+    });
+    throw_if_stopped(progress_);
+    std::vector<Pair> all;
+    for (const std::vector<Pair>& some : open) all.insert(all.end(), some.begin(), some.end());
+    return all;
+  }
+
+  /// Decides the pairs of cells that a first look left open, with a tree for each of their cells.
+  void decide(std::vector<Pair> pairs) {
+    std::erase_if(pairs, [&](const Pair& p) { return together(p.first, p.second); });
+    std::vector<std::uint32_t> cells;
+    for (const auto& [a, b] : pairs) cells.insert(cells.end(), {a, b});
+    std::ranges::sort(cells);
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    std::vector<std::optional<CellTree>> trees(cells.size());
+    for_each_parallel(cells.size(), [&](std::size_t i) {
+      if (progress_.stop_requested()) return;
+      trees[i].emplace(grid_.points(cells[i]), neighbourhood_.quantisation());
+    });
+    throw_if_stopped(progress_);
+    const auto tree_of = [&](std::uint32_t cell) -> const PointBlocks& {
+      const auto at = std::ranges::lower_bound(cells, cell) - cells.begin();
+      return trees[static_cast<std::size_t>(at)]->blocks();
+    };
+    for_each_parallel(pairs.size(), [&](std::size_t i) {
+      const auto [a, b] = pairs[i];
+      if (progress_.stop_requested() || together(a, b)) return;
+      if (near(neighbourhood_, tree_of(a), 0, tree_of(b), 0)) {
+        sets_.unite(first_of(a), first_of(b));
+      }
+    });
+    throw_if_stopped(progress_);
+  }
+
+  const CellGrid& grid_;
   const Neighbourhood& neighbourhood_;
   UnionFind& sets_;
-  std::vector<Pair> pairs_;
-  std::vector<std::uint32_t> cells_;
-  std::vector<std::optional<PointTree>> trees_;  ///< trees of cells_
+  Progress& progress_;
 };
 
-/// Compares each cell with those of one row, and unites cells that hold neighbours. Returns the
-/// pairs that stay open.
-std::vector<Pair> look_along(const CellGrid& grid, const Neighbourhood& neighbourhood,
-                             UnionFind& sets, const RowStep& step, Progress& progress) {
-  tbb::enumerable_thread_specific<std::vector<Pair>> open;
-  for_each_parallel(CellRange(0, grid.cells(), kCellGrain), [&](const CellRange& range) {
-    if (progress.stop_requested()) return;
-    RowWalk walk(grid, neighbourhood, step);
-    for (std::uint32_t cell = range.begin(); cell != range.end(); ++cell) {
-      walk.visit(cell, [&](std::uint32_t other) {
-        if (sets.together(cell, other)) return;
-        switch (compare_cells(neighbourhood, grid.points(cell), grid.points(other))) {
-          case Nearness::kNear:
-            return sets.unite(cell, other);
-          case Nearness::kOpen:
-            return open.local().emplace_back(cell, other), void();
-          case Nearness::kFar:
-            return;
-        }
-      });
+/// Groups the points layer by layer, as many layers together as may be at work at the same time.
+class Grouping {
+ public:
+  Grouping(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
+           const GroupingLimit& limit, const std::vector<bool>* only, Progress& progress)
+      : points_(points),
+        neighbourhood_(neighbourhood),
+        limit_(limit),
+        only_(only),
+        progress_(progress),
+        sets_(points.size()) {}
+
+  std::vector<std::uint32_t> run() {
+    if (points_.empty()) return {};
+    const QuantumBox box = box_of(points_);
+    std::ranges::copy(box.lo, origin_.q);
+    std::uint64_t most = 0;
+    for (int k = 0; k < 3; ++k) {
+      const std::uint64_t layers = layer_at(box.hi[k], k) + 1;
+      if (layers > most) axis_ = k;
+      most = std::max(most, layers);
     }
-    progress.advance(range.size());
-  });
-  throw_if_stopped(progress);
-  std::vector<Pair> all;
-  for (const std::vector<Pair>& some : open) all.insert(all.end(), some.begin(), some.end());
-  return all;
-}
+    group(0, most);
+    return sets_.take_roots();
+  }
+
+ private:
+  std::uint64_t layer_at(std::int32_t q, int axis) const {
+    return layer_of(q, origin_.q[axis], neighbourhood_.cell()[static_cast<std::size_t>(axis)]);
+  }
+
+  /// Groups the points of some layers with each other, and with those of the layers before them
+  /// that can hold neighbours.
+  void group(std::uint64_t first, std::uint64_t end) {
+    const std::uint64_t away = neighbourhood_.cells_away()[static_cast<std::size_t>(axis_)];
+    const auto takes = [this, from = first - std::min(first, away), end](std::size_t i) {
+      const std::uint64_t at = layer_at(points_[i].q[axis_], axis_);
+      return at >= from && at < end && (only_ == nullptr || (*only_)[i]);
+    };
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < points_.size(); ++i) count += takes(i) ? 1 : 0;
+    if (count > limit_.points && end - first > 1) {
+      const std::uint64_t middle = first + (end - first) / 2;
+      group(first, middle);
+      return group(middle, end);
+    }
+    if (count > limit_.points) limit_.refuse(count);
+    if (count == 0) return;
+    const CellGrid grid(points_, neighbourhood_, origin_, count, takes);
+    LayerGroups(grid, neighbourhood_, sets_, progress_).unite();
+  }
+
+  std::span<const QuantumPoint> points_;
+  const Neighbourhood& neighbourhood_;
+  const GroupingLimit& limit_;
+  const std::vector<bool>* only_;
+  Progress& progress_;
+  QuantumPoint origin_{};
+  int axis_ = 0;
+  UnionFind sets_;
+};
 
 }  // namespace
 
-void join_cells(CellGrid& grid, const Neighbourhood& neighbourhood, UnionFind& sets,
-                Progress& progress) {
-  const std::vector<RowStep> rows = rows_in_reach(neighbourhood);
-  progress.begin("group", rows.size() * grid.cells(), "cells");
-  for (const RowStep& step : rows) {
-    OpenPairs open(grid, neighbourhood, sets,
-                   look_along(grid, neighbourhood, sets, step, progress));
-    open.decide(progress);
-    throw_if_stopped(progress);
-  }
-  progress.end();
-}
-
-PointGroups number_groups(const CellGrid& grid, UnionFind& sets, std::uint64_t min_points) {
+PointGroups group_points(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
+                         std::uint64_t min_points, Progress& progress, const GroupingLimit& limit,
+                         const std::vector<bool>* only) {
   PointGroups out;
-  // A root is the first cell of its set, so it gets its number before the set's other cells ask for
-  // it.
-  std::vector<std::uint32_t> points(grid.cells());  // at the index of a root, the points of its set
-  for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
-    points[sets.find(cell)] += static_cast<std::uint32_t>(grid.points(cell).size());
-  }
-  out.of_cell.resize(grid.cells());
-  for (std::uint32_t cell = 0; cell < grid.cells(); ++cell) {
-    const std::uint32_t root = sets.find(cell);
-    if (root != cell) {
-      out.of_cell[cell] = out.of_cell[root];
-    } else if (points[cell] >= min_points) {
-      out.of_cell[cell] = out.count++;
+  out.of_point = Grouping(points, neighbourhood, limit, only, progress).run();
+  std::vector<std::uint32_t> size(points.size());  // at the root of each group
+  for (const std::uint32_t root : out.of_point) ++size[root];
+  // A root is the first point of its group, so it has its number before the others ask for it.
+  for (std::uint32_t i = 0; i < size.size(); ++i) {
+    std::uint32_t& group = out.of_point[i];
+    if (group != i) {
+      group = out.of_point[group];
+    } else if (size[i] >= min_points) {
+      group = out.count++;
     } else {
-      out.of_cell[cell] = PointGroups::kSmall | static_cast<std::uint32_t>(out.small_groups++);
-      out.small_points += points[cell];
+      group = PointGroups::kSmall | static_cast<std::uint32_t>(out.small_groups++);
+      out.small_points += size[i];
     }
   }
   return out;

@@ -11,8 +11,8 @@
 #include "clearway/conflicts.hpp"
 #include "clearway/vec3.hpp"
 #include "core/geometry/quantisation.hpp"
-#include "findings/group/cell_grid.hpp"
 #include "findings/ledger/ledger_date.hpp"
+#include "findings/point_blocks.hpp"
 #include "io/result/result_header.hpp"
 
 namespace clearway {

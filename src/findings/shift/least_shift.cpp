@@ -665,9 +665,9 @@ void LeastShift::add_instants(std::size_t body, std::uint32_t i, bool with_way, 
 /// blocked shifts too, and it depends neither on threads nor on the order of units.
 class LeastShift::Round {
  public:
-  Round(const LeastShift& shifts, std::span<const PointsToFree> sets,
-        const std::vector<std::optional<PointBlocks>>& blocks, double most, Progress& progress)
-      : shifts_(shifts), sets_(sets), blocks_(blocks), most_(most), progress_(progress) {}
+  Round(const LeastShift& shifts, std::span<const PointsToFree> sets, double most,
+        Progress& progress)
+      : shifts_(shifts), sets_(sets), most_(most), progress_(progress) {}
 
   std::vector<SideShifts> run(const std::vector<Unit>& units) {
     units_ = units;
@@ -711,7 +711,7 @@ class LeastShift::Round {
         shifts_.add_instants(unit.body, pose, shifts_.ways_ && pose < last, direction_of(side),
                              instants);
       }
-      UnitSearch search(shape, *blocks_[unit.set], std::move(instants), shifts_.radius_, most_,
+      UnitSearch search(shape, *sets_[unit.set].points, std::move(instants), shifts_.radius_, most_,
                         progress_);
       found[i] = search.run(shift_[side]);
       unit.until[side % 2] = search.until();
@@ -728,7 +728,7 @@ class LeastShift::Round {
   void find_first_bounds() {
     for_each_parallel(shift_.size(), [&](std::size_t side) {
       const PointsToFree& set = sets_[side / 2];
-      if (!blocks_[side / 2]) return;
+      if (set.points == nullptr) return;
       const std::uint64_t poses = std::uint64_t{set.last} - set.first + 1;
       if (poses <= kChunk) return;
       for (std::size_t body = 0; body < shifts_.bodies_.size(); ++body) {
@@ -740,8 +740,8 @@ class LeastShift::Round {
               static_cast<std::uint32_t>(set.first + (2 * i + 1) * poses / (2 * count));
           shifts_.add_instants(body, pose, false, direction_of(side), instants);
         }
-        UnitSearch search(*shifts_.shapes_[body], *blocks_[side / 2], std::move(instants),
-                          shifts_.radius_, most_, progress_);
+        UnitSearch search(*shifts_.shapes_[body], *set.points, std::move(instants), shifts_.radius_,
+                          most_, progress_);
         shift_[side] = search.run(shift_[side]);
       }
     });
@@ -749,15 +749,13 @@ class LeastShift::Round {
 
   const LeastShift& shifts_;
   std::span<const PointsToFree> sets_;
-  const std::vector<std::optional<PointBlocks>>& blocks_;
   const double most_;
   Progress& progress_;
   std::vector<Unit> units_;
   std::vector<double> shift_;  ///< of each set to the left and to the right
 };
 
-std::vector<SideShifts> LeastShift::least(const Quantisation& quantisation,
-                                          std::span<const PointsToFree> sets, double most,
+std::vector<SideShifts> LeastShift::least(std::span<const PointsToFree> sets, double most,
                                           Progress& progress) const {
   std::vector<SideShifts> out;
   for (std::size_t begin = 0; begin < sets.size();) {
@@ -765,13 +763,9 @@ std::vector<SideShifts> LeastShift::least(const Quantisation& quantisation,
     std::size_t end = begin;
     for (; end < sets.size() && units.size() < kMostUnits; ++end) {
       const PointsToFree& set = sets[end];
-      if (set.points.empty()) continue;
-      QuantumBox quanta{};
-      std::ranges::copy(set.points[0].q, quanta.lo);
-      std::ranges::copy(set.points[0].q, quanta.hi);
-      for (const QuantumPoint& p : set.points) quanta.extend(p.q);
+      if (set.points == nullptr) continue;
       // More than roundings can move a place
-      const Box box = position_box(quantisation, quanta);
+      const Box box = set.points->box(0);
       const Vec3 reach = reach_of(box);
       const double margin =
           (most * longest_left_ + radius_ + std::max({reach.x, reach.y, reach.z})) * 1e-12 +
@@ -791,13 +785,7 @@ std::vector<SideShifts> LeastShift::least(const Quantisation& quantisation,
         }
       }
     }
-    std::vector<std::optional<PointBlocks>> blocks(end - begin);
-    for_each_parallel(blocks.size(), [&](std::size_t i) {
-      const std::span<QuantumPoint> points = sets[begin + i].points;
-      if (!points.empty() && !progress.stop_requested()) blocks[i].emplace(quantisation, points);
-    });
-    throw_if_stopped(progress);
-    Round round(*this, sets.subspan(begin, end - begin), blocks, most, progress);
+    Round round(*this, sets.subspan(begin, end - begin), most, progress);
     std::ranges::copy(round.run(units), std::back_inserter(out));
     throw_if_stopped(progress);
     progress.advance(end - begin);

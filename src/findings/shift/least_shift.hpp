@@ -9,10 +9,8 @@
 #include "clearway/pose.hpp"
 #include "clearway/query.hpp"
 #include "clearway/vec3.hpp"
-#include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
-#include "findings/group/cell_grid.hpp"
-#include "findings/shift/point_blocks.hpp"
+#include "findings/point_blocks.hpp"
 
 namespace clearway {
 
@@ -25,7 +23,7 @@ struct SideShifts {
 
 /// Points that a shift has to free at the poses from `first` to `last`.
 struct PointsToFree {
-  std::span<QuantumPoint> points;  ///< their order may be changed
+  const PointBlocks* points = nullptr;  ///< null: none
   std::uint32_t first = 0, last = 0;
 };
 
@@ -34,10 +32,6 @@ struct PointsToFree {
 /// to the left (docs/design/findings.md, "Own shifts").
 class LeastShift {
  public:
-  /// The bytes that a point, and each set of points, take beside the points themselves.
-  static constexpr std::uint64_t kBytesOfPoint = PointBlocks::kBytesOfPoint;
-  static constexpr std::uint64_t kBytesOfSet = PointBlocks::kBytesOfTree + 64;
-
   /// left: the direction to the left in the frame of the path's poses, +Y for a vehicle whose front
   /// points along +X. ways: whether model points move on straight segments from pose to pose, which
   /// are looked at in steps of half the radius. A point below a body's floor does not collide with
@@ -50,11 +44,10 @@ class LeastShift {
   LeastShift& operator=(const LeastShift&) = delete;
 
   /// For each set of points, the least shifts of at most `most` metres at which none of them
-  /// collides at any of its poses. The same for any order of the points and any number of threads.
+  /// collides at any of its poses. The same for any number of threads.
   /// Progress advances by one for each set. Runs in the caller's arena of oneTBB. Throws
   /// Interrupted.
-  std::vector<SideShifts> least(const Quantisation& quantisation,
-                                std::span<const PointsToFree> sets, double most,
+  std::vector<SideShifts> least(std::span<const PointsToFree> sets, double most,
                                 Progress& progress) const;
 
  private:

@@ -1,14 +1,33 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "core/geometry/quantisation.hpp"
-#include "findings/group/cell_grid.hpp"
 
 namespace clearway {
+
+/// The stored integers of a point, one on each axis.
+struct QuantumPoint {
+  std::int32_t q[3];
+};
+
+/// The absolute difference of two stored integers.
+inline std::uint64_t difference_of(const std::int32_t a, const std::int32_t b) {
+  return static_cast<std::uint64_t>(a < b ? std::int64_t{b} - a : std::int64_t{a} - b);
+}
+
+/// The box around some points, of which there must be at least one.
+inline QuantumBox box_of(std::span<const QuantumPoint> points) {
+  QuantumBox box{};
+  std::ranges::copy(points[0].q, box.lo);
+  std::ranges::copy(points[0].q, box.hi);
+  for (const QuantumPoint& p : points) box.extend(p.q);
+  return box;
+}
 
 /// A balanced tree of boxes over points, whose leaves are blocks of a few neighbouring points. It
 /// is the same for any order of the points and any number of threads.
@@ -29,7 +48,11 @@ class PointBlocks {
   /// caller's arena of oneTBB.
   PointBlocks(const Quantisation& quantisation, std::span<QuantumPoint> points);
 
+  std::size_t size() const { return points_.size(); }
   const Node& node(std::uint32_t index) const { return nodes_[index]; }
+  std::span<const QuantumPoint> points(std::uint32_t index) const {
+    return points_.subspan(nodes_[index].begin, nodes_[index].end - nodes_[index].begin);
+  }
   /// Whether a node is a block. The children of any other node i are 2 i + 1 and 2 i + 2.
   bool is_block(std::uint32_t index) const { return index >= first_block_; }
   Vec3 place(std::uint32_t point) const {

@@ -1,4 +1,4 @@
-#include "findings/shift/point_blocks.hpp"
+#include "findings/point_blocks.hpp"
 
 #include <tbb/parallel_invoke.h>
 
@@ -40,9 +40,7 @@ void PointBlocks::build(std::uint32_t index, std::uint32_t begin, std::uint32_t 
   node.begin = begin;
   node.end = end;
   const std::span<QuantumPoint> points = points_.subspan(begin, end - begin);
-  std::ranges::copy(points[0].q, node.box.lo);
-  std::ranges::copy(points[0].q, node.box.hi);
-  for (const QuantumPoint& p : points) node.box.extend(p.q);
+  node.box = box_of(points);
   int longest = 0;
   double most = -1;
   for (int k = 0; k < 3; ++k) {
