@@ -1,4 +1,3 @@
-#include <array>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -19,24 +18,6 @@
 #include "python/binding.hpp"
 #include "python/objects.hpp"
 #include "python/watch.hpp"
-
-namespace clearway {
-
-template <>
-inline constexpr std::array kChoices<CantLine>{
-    Choice<CantLine>{"file", CantLine::kFile},
-    Choice<CantLine>{"none", CantLine::kNone},
-    Choice<CantLine>{"center", CantLine::kCenter},
-    Choice<CantLine>{"inside-rail", CantLine::kInsideRail},
-    Choice<CantLine>{"outside-rail", CantLine::kOutsideRail},
-    Choice<CantLine>{"left-rail", CantLine::kLeftRail},
-    Choice<CantLine>{"right-rail", CantLine::kRightRail}};
-template <>
-inline constexpr std::array kChoices<AxisOrder>{
-    Choice<AxisOrder>{"ne", AxisOrder::kNorthingEasting},
-    Choice<AxisOrder>{"en", AxisOrder::kEastingNorthing}};
-
-}  // namespace clearway
 
 /// Paths and scans from files.
 namespace clearway::python {

@@ -37,17 +37,22 @@ struct ConvertCommand {
 void add_options(CLI::App& command, ConvertCommand& options);
 ConvertReport perform(ConvertCommand& options);
 
-/// The options of `clearway trajectory resample` and thin.
-struct ChangeCommand {
-  std::filesystem::path input, output, model, environment;  ///< model: or the file of a vehicle
-  double max_motion = 0;
-  FileUnit model_unit = {};
-  ModelAxes model_axes;
+/// The options of the commands that write poses; each adds its own.
+struct PoseCommand {
+  std::filesystem::path input, output, environment;
+  TrajectoryOptions trajectory;  ///< how a path is read
   LengthOptions lengths;
-  TrajectoryOptions trajectory;
   std::string unit = "m";  ///< the symbol of the unit of lengths, for messages
   bool force = false;
   bool json = false;
+};
+
+/// The options of `clearway trajectory resample` and thin.
+struct ChangeCommand : PoseCommand {
+  std::filesystem::path model;  ///< or the file of a vehicle
+  double max_motion = 0;
+  FileUnit model_unit = {};
+  ModelAxes model_axes;
 };
 
 /// Adds the options of `clearway trajectory resample`.

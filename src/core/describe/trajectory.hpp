@@ -3,6 +3,7 @@
 #include <array>
 #include <tuple>
 
+#include "clearway/alignment.hpp"
 #include "clearway/trajectory.hpp"
 #include "core/describe/field.hpp"
 
@@ -28,6 +29,20 @@ template <>
 inline constexpr std::array kChoices<AngleFrame>{
     Choice<AngleFrame>{"declared", AngleFrame::kDeclared},
     Choice<AngleFrame>{"ned", AngleFrame::kNed}, Choice<AngleFrame>{"enu", AngleFrame::kEnu}};
+
+template <>
+inline constexpr std::array kChoices<CantLine>{
+    Choice<CantLine>{"file", CantLine::kFile},
+    Choice<CantLine>{"none", CantLine::kNone},
+    Choice<CantLine>{"center", CantLine::kCenter},
+    Choice<CantLine>{"inside-rail", CantLine::kInsideRail},
+    Choice<CantLine>{"outside-rail", CantLine::kOutsideRail},
+    Choice<CantLine>{"left-rail", CantLine::kLeftRail},
+    Choice<CantLine>{"right-rail", CantLine::kRightRail}};
+template <>
+inline constexpr std::array kChoices<AxisOrder>{
+    Choice<AxisOrder>{"ne", AxisOrder::kNorthingEasting},
+    Choice<AxisOrder>{"en", AxisOrder::kEastingNorthing}};
 
 inline constexpr std::tuple kFormatOfTrajectory{Field{
     .member = &TrajectoryOptions::format,

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <type_traits>
@@ -25,23 +27,21 @@ namespace clearway::tool {
 /// empty: the help shows the default instead.
 template <typename Value>
 CLI::Option* add_choice(CLI::App& command, const std::string& name, Value& chosen,
-                        const char* value_name, const std::string& help) {
+                        const char* value_name, const std::string& help,
+                        std::span<const Choice<Value>> choices = kChoices<Value>,
+                        bool ignores_case = false) {
   std::vector<std::string> names;
   std::string usual;
-  for (const auto& [known, value] : kChoices<Value>) {
+  for (const auto& [known, value] : choices) {
     names.emplace_back(known);
     if (value == chosen) usual = known;
   }
-  CLI::Option* option = command
-                            .add_option_function<std::string>(
-                                name,
-                                [&chosen](const std::string& given) {
-                                  for (const auto& [known, value] : kChoices<Value>) {
-                                    if (given == known) chosen = value;
-                                  }
-                                },
-                                help)
-                            ->check(CLI::IsMember(names));
+  const auto read = [&chosen, choices](const std::string& given) {
+    chosen = std::ranges::find(choices, given, &Choice<Value>::name)->value;
+  };
+  CLI::Option* option =
+      command.add_option_function<std::string>(name, read, help)
+          ->transform(ignores_case ? CLI::IsMember(names, CLI::ignore_case) : CLI::IsMember(names));
   return *value_name == '\0' ? option->default_str(usual) : option->type_name(value_name);
 }
 

@@ -18,22 +18,33 @@
 namespace clearway::tool {
 namespace {
 
-/// Reads kCount lengths with commas between them. expected: for the error, what the text should be.
-/// Throws CLI::ValidationError.
-template <std::size_t kCount>
-std::array<ParsedLength, kCount> parse_lengths(const std::string& option, const std::string& text,
-                                               const char* expected) {
-  std::array<ParsedLength, kCount> out{};
+/// What help texts and errors call one, two, three or four lengths.
+struct LengthNames {
+  const char* type;
+  const char* expected = "";
+};
+
+constexpr std::array kLengthNames{
+    LengthNames{kLengthType},
+    LengthNames{"A,B", "two numbers of metres, for example 10,-10, or with units"},
+    LengthNames{"X,Y,Z",
+                "three numbers of metres, for example 1.2,0,1.5, or with units, for example "
+                "120cm,0,1.5m"},
+    LengthNames{"A,B,C,D", "four numbers of metres, for example -4,4,0,6, or with units"}};
+
+/// Reads a length of the range, or so many lengths with commas between them. Throws
+/// CLI::ValidationError.
+std::vector<ParsedLength> parse_lengths(const std::string& option, const std::string& text,
+                                        std::size_t count, FieldRange range) {
+  if (count == 1) return {parse_length(option, text, range)};
   std::vector<std::string_view> fields;
   split_fields(text, ',', fields);
-  bool good = fields.size() == out.size();
-  for (std::size_t k = 0; good && k < out.size(); ++k) {
-    const auto length = length_of(fields[k]);
-    good = length.has_value();
-    if (good) out[k] = *length;
+  std::vector<ParsedLength> lengths;
+  for (const std::string_view field : fields) {
+    if (const auto length = length_of(field)) lengths.push_back(*length);
   }
-  if (good) return out;
-  throw CLI::ValidationError(option, text + ": expected " + expected);
+  if (fields.size() == count && lengths.size() == count) return lengths;
+  throw CLI::ValidationError(option, text + ": expected " + kLengthNames[count - 1].expected);
 }
 
 /// Metres per unit of the CRS that well-known text describes; 1 where it names no unit.
@@ -76,83 +87,20 @@ CLI::Option* add_unit_option(CLI::App& command, const std::string& names, FileUn
       ->check(CLI::IsMember(file_unit_names()));
 }
 
-CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, double& length,
-                                const std::string& description, FieldRange range) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [this, &length, name, range](const std::string& text) {
-            set(length, parse_length(name, text, range));
-          },
-          description)
-      ->type_name(kLengthType);
-}
-
-CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
-                                std::optional<double>& length, const std::string& description,
-                                FieldRange range) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [this, &length, name, range](const std::string& text) {
-            set(length.emplace(), parse_length(name, text, range));
-          },
-          description)
-      ->type_name(kLengthType);
-}
-
-CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name, Vec3& lengths,
-                                const std::string& description) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [this, &lengths, name](const std::string& text) {
-            const auto parsed = parse_lengths<3>(
-                name, text,
-                "three numbers of metres, for example 1.2,0,1.5, or with units, for example "
-                "120cm,0,1.5m");
-            for (int k = 0; k < 3; ++k) set(lengths[k], parsed[static_cast<std::size_t>(k)]);
-          },
-          description)
-      ->type_name("X,Y,Z");
-}
-
-CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
-                                std::optional<std::array<double, 2>>& lengths,
-                                const std::string& description) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [this, &lengths, name](const std::string& text) {
-            const auto parsed = parse_lengths<2>(
-                name, text, "two numbers of metres, for example 10,-10, or with units");
-            lengths.emplace();
-            for (std::size_t k = 0; k < 2; ++k) set((*lengths)[k], parsed[k]);
-          },
-          description)
-      ->type_name("A,B");
-}
-
-CLI::Option* LengthOptions::add(CLI::App& command, const std::string& name,
-                                std::optional<std::array<double, 4>>& lengths,
-                                const std::string& description) {
-  return command
-      .add_option_function<std::string>(
-          name,
-          [this, &lengths, name](const std::string& text) {
-            const auto parsed = parse_lengths<4>(
-                name, text, "four numbers of metres, for example -4,4,0,6, or with units");
-            lengths.emplace();
-            for (std::size_t k = 0; k < 4; ++k) set((*lengths)[k], parsed[k]);
-          },
-          description)
-      ->type_name("A,B,C,D");
-}
-
-void LengthOptions::set(double& length, const ParsedLength& parsed) {
-  length = parsed.value;
-  if (parsed.has_unit) with_unit_.emplace_back(&length, parsed);
-  if (!parsed.has_unit && parsed.value != 0) lacks_unit_ = true;
+CLI::Option* LengthOptions::add_numbers(CLI::App& command, const std::string& name,
+                                        std::size_t count, const std::function<Numbers()>& numbers,
+                                        const std::string& description, FieldRange range) {
+  const auto read = [this, name, count, numbers, range](const std::string& text) {
+    const std::vector<ParsedLength> lengths = parse_lengths(name, text, count, range);
+    const Numbers into = numbers();
+    for (std::size_t i = 0; i < count; ++i) {
+      *into[i] = lengths[i].value;
+      if (lengths[i].has_unit) with_unit_.emplace_back(into[i], lengths[i]);
+      if (!lengths[i].has_unit && lengths[i].value != 0) lacks_unit_ = true;
+    }
+  };
+  return command.add_option_function<std::string>(name, read, description)
+      ->type_name(kLengthNames[count - 1].type);
 }
 
 void LengthOptions::convert(double metres) const {

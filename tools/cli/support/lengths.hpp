@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,28 +57,17 @@ inline constexpr const char* kLengthType = "METRES";
 /// is known.
 class LengthOptions {
  public:
-  /// Adds an option that takes a length. This object and `length` outlive the command.
-  CLI::Option* add(CLI::App& command, const std::string& name, double& length,
-                   const std::string& description, FieldRange range = FieldRange::kAboveZero);
-  /// Adds an option for a length that need not be given. This object and `length` outlive the
-  /// command.
-  CLI::Option* add(CLI::App& command, const std::string& name, std::optional<double>& length,
-                   const std::string& description, FieldRange range);
-
-  /// Adds an option for three lengths X,Y,Z, which may be 0 or negative. This object and `lengths`
-  /// outlive the command.
-  CLI::Option* add(CLI::App& command, const std::string& name, Vec3& lengths,
-                   const std::string& description);
-
-  /// Adds an option for two lengths A,B, which may be 0 or negative and need not be given. This
-  /// object and `lengths` outlive the command.
-  CLI::Option* add(CLI::App& command, const std::string& name,
-                   std::optional<std::array<double, 2>>& lengths, const std::string& description);
-
-  /// Adds an option for four lengths, which may be 0 or negative and need not be given. This object
-  /// and `lengths` outlive the command.
-  CLI::Option* add(CLI::App& command, const std::string& name,
-                   std::optional<std::array<double, 4>>& lengths, const std::string& description);
+  /// Adds an option that takes a length, or several with commas between them. range: of a length
+  /// that stands alone; each of several may be 0 or negative. This object and `lengths` outlive the
+  /// command; optional ones are set once they are given.
+  template <typename Lengths>
+  CLI::Option* add(CLI::App& command, const std::string& name, Lengths& lengths,
+                   const std::string& description, FieldRange range = FieldRange::kAboveZero) {
+    Lengths any{};
+    return add_numbers(
+        command, name, numbers_of(any).size(), [&lengths] { return numbers_of(lengths); },
+        description, range);
+  }
 
   /// Converts the lengths that were given with a unit into units of `metres` metres.
   void convert(double metres) const;
@@ -97,7 +88,24 @@ class LengthOptions {
   bool all_have_units() const { return !lacks_unit_; }
 
  private:
-  void set(double& length, const ParsedLength& parsed);
+  using Numbers = std::vector<double*>;
+
+  static Numbers numbers_of(double& length) { return {&length}; }
+  static Numbers numbers_of(Vec3& lengths) { return {&lengths.x, &lengths.y, &lengths.z}; }
+  template <std::size_t kCount>
+  static Numbers numbers_of(std::array<double, kCount>& lengths) {
+    Numbers numbers;
+    for (double& length : lengths) numbers.push_back(&length);
+    return numbers;
+  }
+  template <typename Lengths>
+  static Numbers numbers_of(std::optional<Lengths>& lengths) {
+    return numbers_of(lengths.emplace());
+  }
+
+  CLI::Option* add_numbers(CLI::App& command, const std::string& name, std::size_t count,
+                           const std::function<Numbers()>& numbers, const std::string& description,
+                           FieldRange range);
 
   std::vector<std::pair<double*, ParsedLength>> with_unit_;
   bool lacks_unit_ = false;

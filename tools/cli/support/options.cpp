@@ -433,16 +433,7 @@ void add_outline_unit(CLI::App& command, FileUnit& unit) {
 
 CLI::Option* add_axis_option(CLI::App& command, const std::string& name, Axis& axis,
                              const std::string& description) {
-  static const std::map<std::string, Axis> kAxes{
-      {"+x", Axis::kPlusX}, {"x", Axis::kPlusX}, {"-x", Axis::kMinusX},
-      {"+y", Axis::kPlusY}, {"y", Axis::kPlusY}, {"-y", Axis::kMinusY},
-      {"+z", Axis::kPlusZ}, {"z", Axis::kPlusZ}, {"-z", Axis::kMinusZ}};
-  return command
-      .add_option_function<std::string>(
-          name, [&axis](const std::string& text) { axis = kAxes.at(text); }, description)
-      ->type_name("AXIS")
-      ->transform(
-          CLI::IsMember({"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}, CLI::ignore_case));
+  return add_choice<Axis>(command, name, axis, "AXIS", description, kChoices<Axis>, true);
 }
 
 void add_turn_options(CLI::App& command, Axis& forward, Axis& up) {

@@ -206,27 +206,26 @@ int run_program(const ProgramText& text, int argc, char** argv, AddCommands add_
     return kResource;
   }
   prepare_process();
+  const auto fail = [](ExitCode code, const Error& error) {
+    spdlog::error("{}{}", error.what(), advice_on(error));
+    return code;
+  };
   try {
     return run(text, argc, argv, add_commands);
   } catch (const UsageError& error) {
-    spdlog::error("{}{}", error.what(), advice_on(error));
-    return kWrongUsage;
+    return fail(kWrongUsage, error);
   } catch (const InputError& error) {
-    spdlog::error("{}{}", error.what(), advice_on(error));
-    return kBadInput;
+    return fail(kBadInput, error);
   } catch (const ResourceError& error) {
-    spdlog::error("{}{}", error.what(), advice_on(error));
-    return kResource;
-  } catch (const Interrupted& stopped) {
-    spdlog::error("{}", stopped.what());
-    return kInterrupted;
+    return fail(kResource, error);
+  } catch (const Interrupted& error) {
+    return fail(kInterrupted, error);
   } catch (const std::bad_alloc&) {
     spdlog::error("out of memory; a smaller --memory or fewer --threads may help");
-    return kResource;
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
-    return kResource;
   }
+  return kResource;
 }
 
 }  // namespace clearway::tool

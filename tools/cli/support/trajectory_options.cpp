@@ -14,34 +14,29 @@
 namespace clearway::tool {
 namespace {
 
-std::vector<std::string> parts_of(const std::string& text) {
-  std::vector<std::string_view> fields;
-  split_fields(text, ',', fields);
-  return {fields.begin(), fields.end()};
-}
-
+/// Sets what the word names, if it is one of the choices. Returns whether it is.
 template <typename Value>
-void declare(Value& what, Value value, const std::string& word) {
-  if (what != Value::kDeclared && what != value) {
-    throw CLI::ValidationError("--angles", word + " contradicts what stands before it");
+bool declare(Value& what, std::string_view word) {
+  for (const auto& [name, value] : kChoices<Value>) {
+    if (value == Value::kDeclared || word != name) continue;
+    if (what != Value::kDeclared && what != value) {
+      throw CLI::ValidationError("--angles",
+                                 std::string(word) + " contradicts what stands before it");
+    }
+    what = value;
+    return true;
   }
-  what = value;
+  return false;
 }
 
 void set_angles(TrajectoryOptions& options, const std::string& text) {
-  for (const std::string& word : parts_of(text)) {
-    if (word == "deg") {
-      declare(options.angle_unit, AngleUnit::kDegrees, word);
-    } else if (word == "rad") {
-      declare(options.angle_unit, AngleUnit::kRadians, word);
-    } else if (word == "ned") {
-      declare(options.angle_frame, AngleFrame::kNed, word);
-    } else if (word == "enu") {
-      declare(options.angle_frame, AngleFrame::kEnu, word);
-    } else {
-      throw CLI::ValidationError(
-          "--angles", word + ": expected deg or rad, and ned or enu, for example deg,ned");
-    }
+  std::vector<std::string_view> words;
+  split_fields(text, ',', words);
+  for (const std::string_view word : words) {
+    if (declare(options.angle_unit, word) || declare(options.angle_frame, word)) continue;
+    throw CLI::ValidationError(
+        "--angles",
+        std::string(word) + ": expected deg or rad, and ned or enu, for example deg,ned");
   }
 }
 
