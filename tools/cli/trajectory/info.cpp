@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "cli/support/label_text.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
@@ -20,6 +19,7 @@
 #include "core/trajectory/trajectory_summary.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
+#include "report/label_text.hpp"
 
 namespace clearway::tool {
 namespace {
