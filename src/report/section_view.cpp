@@ -327,8 +327,6 @@ static void to_json(Json& json, const ShownLoad& load) {
   json = members_json<&ShownLoad::outline_name, &ShownLoad::margin, &ShownLoad::outline>(load);
 }
 
-static void to_json(Json& json, const SectionBinRange& bins) { json = {bins.first, bins.last}; }
-
 static void to_json(Json& json, const OutlineGap& gap) {
   json = members_json<&OutlineGap::chainage_from, &OutlineGap::chainage_to, &OutlineGap::bins>(gap);
 }
