@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include "clearway/unseen.hpp"
@@ -13,12 +14,11 @@
 #include "core/seen/cross_sections.hpp"
 #include "core/seen/cubes.hpp"
 #include "core/trajectory/chainage.hpp"
+#include "findings/row_pieces.hpp"
 #include "findings/touched_first.hpp"
 #include "findings/unseen_lattice.hpp"
-#include "io/files/input_error.hpp"
 #include "io/paths/content_hash.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/requantize.hpp"
 
 namespace clearway {
 namespace {
@@ -52,11 +52,9 @@ class GroupSearch {
     find_model_box();
     place_cubes();
     make_groups();
-    find_sides();
     find_conflicts();
     find_stretches();
     find_front();
-    list_middles();
     return std::move(out_);
   }
 
@@ -117,48 +115,71 @@ class GroupSearch {
     return chainage_[std::min<std::size_t>(pose + std::size_t{1}, chainage_.size() - 1)];
   }
 
+  /// Describes the groups one by one, from their cubes in the order of the file.
   void make_groups() {
-    const std::uint32_t most = cubes_.group.empty() ? 0 : *std::ranges::max_element(cubes_.group);
-    std::vector<std::uint64_t> sizes(most + std::size_t{1});
-    for (const std::uint32_t group : cubes_.group) ++sizes[group];
-    listed_at_.assign(sizes.size(), kNotListed);
-    for (std::uint32_t id = 1; id <= most; ++id) {
-      if (sizes[id] < header_.seen_min) {
+    std::vector<std::uint32_t> order(size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto group_of = [&](std::uint32_t cube) { return cubes_.group[cube]; };
+    std::ranges::stable_sort(order, {}, group_of);
+    listed_at_.assign(order.empty() ? 1 : group_of(order.back()) + std::size_t{1}, kNotListed);
+    for (auto first = order.begin(); first != order.end();) {
+      const std::uint32_t id = group_of(*first);
+      const auto end = std::ranges::upper_bound(first, order.end(), id, {}, group_of);
+      const std::span<const std::uint32_t> cubes(first, end);
+      first = end;
+      if (cubes.size() < header_.seen_min) {
         ++out_.small_groups;
-        out_.small_cubes += sizes[id];
+        out_.small_cubes += cubes.size();
         continue;
       }
       listed_at_[id] = static_cast<std::uint32_t>(out_.listed.size());
-      UnseenGroup group;
-      group.id = id;
-      group.cubes = sizes[id];
-      group.box = kNothing;
-      group.first_pose = std::numeric_limits<std::uint32_t>::max();
-      group.seen = kNothing;
-      out_.listed.push_back(group);
+      out_.listed.push_back(group_of_cubes(id, cubes));
     }
-    for (std::size_t i = 0; i < size(); ++i) {
-      if (UnseenGroup* group = listed_of(i)) add(i, *group);
-    }
-    for (UnseenGroup& group : out_.listed) finish(group);
-    find_middles();
   }
 
-  /// Replaces the mean of each group by the middle of the cube that is nearest to it, because the
-  /// mean of a group along a bend can lie outside all of its cubes. Of equals the first.
-  void find_middles() {
-    std::vector<double> least(out_.listed.size(), std::numeric_limits<double>::infinity());
-    std::vector<Vec3> nearest(out_.listed.size());
-    for (std::size_t i = 0; i < size(); ++i) {
-      const UnseenGroup* group = listed_of(i);
-      if (group == nullptr) continue;
-      const std::uint32_t at = listed_at_[group->id];
-      const Vec3 from = middles_[i] - group->middle;
-      if (!(dot(from, from) < least[at])) continue;
-      least[at] = dot(from, from);
-      nearest[at] = middles_[i];
+  UnseenGroup group_of_cubes(std::uint32_t id, std::span<const std::uint32_t> cubes) {
+    UnseenGroup group{.id = id, .cubes = cubes.size(), .box = kNothing, .seen = kNothing};
+    group.first_pose = std::numeric_limits<std::uint32_t>::max();
+    const Vec3 half_cube{half(0), half(1), half(2)};
+    for (const std::uint32_t i : cubes) {
+      group.box.extend(middles_[i] - half_cube);
+      group.box.extend(middles_[i] + half_cube);
+      group.middle = group.middle + middles_[i];
+      group.first_pose = std::min(group.first_pose, cubes_.first_pose[i]);
+      group.last_pose = std::max(group.last_pose, cubes_.first_pose[i]);
+      if (is_finite(seen_from_path_[i])) group.seen->extend(seen_from_path_[i]);
+      out_.middles.push_back(middles_[i]);
     }
-    for (std::size_t k = 0; k < nearest.size(); ++k) out_.listed[k].middle = nearest[k];
+    const auto count = static_cast<double>(group.cubes);
+    group.middle = {group.middle.x / count, group.middle.y / count, group.middle.z / count};
+    finish(group);
+    group.middle = nearest_middle(group.middle, cubes);
+    group.side = side_at_first(group.first_pose, cubes);
+    return group;
+  }
+
+  /// The middle of the cube that is nearest to a place, because the mean of a group along a bend
+  /// can lie outside all of its cubes. Of equals the first.
+  Vec3 nearest_middle(const Vec3& place, std::span<const std::uint32_t> cubes) const {
+    const auto squared = [&](std::uint32_t i) {
+      const Vec3 from = middles_[i] - place;
+      return dot(from, from);
+    };
+    return middles_[*std::ranges::min_element(cubes, {}, squared)];
+  }
+
+  /// The side on which the cubes lie that are reached at the first pose of their group.
+  Side side_at_first(std::uint32_t pose, std::span<const std::uint32_t> cubes) const {
+    Box first = kNothing;
+    for (const std::uint32_t i : cubes) {
+      if (cubes_.first_pose[i] == pose && is_finite(seen_from_path_[i])) {
+        first.extend(seen_from_path_[i]);
+      }
+    }
+    const Box model = model_box_at(pose);
+    if (!(model.lo.x <= model.hi.x) || !(first.lo.x <= first.hi.x)) return Side::kUnknown;
+    // Both boxes are along ahead, left and up already.
+    return side_of(first, model, Axis::kPlusX, Axis::kPlusZ);
   }
 
   UnseenGroup* listed_of(std::size_t i) {
@@ -166,19 +187,7 @@ class GroupSearch {
     return at == kNotListed ? nullptr : &out_.listed[at];
   }
 
-  void add(std::size_t i, UnseenGroup& group) const {
-    const Vec3 half_cube{half(0), half(1), half(2)};
-    group.box.extend(middles_[i] - half_cube);
-    group.box.extend(middles_[i] + half_cube);
-    group.middle = group.middle + middles_[i];
-    group.first_pose = std::min(group.first_pose, cubes_.first_pose[i]);
-    group.last_pose = std::max(group.last_pose, cubes_.first_pose[i]);
-    if (is_finite(seen_from_path_[i])) group.seen->extend(seen_from_path_[i]);
-  }
-
   void finish(UnseenGroup& group) const {
-    const auto cubes = static_cast<double>(group.cubes);
-    group.middle = {group.middle.x / cubes, group.middle.y / cubes, group.middle.z / cubes};
     const double from = chainage_[group.first_pose], to = end_of(group.last_pose);
     group.chainage_from = from + options_.chainage_start;
     group.chainage_to = to + options_.chainage_start;
@@ -190,22 +199,6 @@ class GroupSearch {
     group.is_ground = group.seen->lo.z < model_box_.lo.z + seen_.cube &&
                       wide > kMostOfWidth * (model_box_.hi.y - model_box_.lo.y);
     group.is_sky = group.seen->lo.z > 0.5 * (model_box_.lo.z + model_box_.hi.z);
-  }
-
-  /// Finds the sides, from the cubes that are reached at the first pose of their group.
-  void find_sides() {
-    std::vector<Box> first(out_.listed.size(), kNothing);
-    for (std::size_t i = 0; i < size(); ++i) {
-      const UnseenGroup* group = listed_of(i);
-      if (group == nullptr || cubes_.first_pose[i] != group->first_pose) continue;
-      if (is_finite(seen_from_path_[i])) first[listed_at_[group->id]].extend(seen_from_path_[i]);
-    }
-    for (std::size_t k = 0; k < out_.listed.size(); ++k) {
-      const Box model = model_box_at(out_.listed[k].first_pose);
-      if (!(model.lo.x <= model.hi.x) || !(first[k].lo.x <= first[k].hi.x)) continue;
-      // Both boxes are along ahead, left and up already.
-      out_.listed[k].side = side_of(first[k], model, Axis::kPlusX, Axis::kPlusZ);
-    }
   }
 
   /// Marks the listed groups of a cube and of the cubes that touch it.
@@ -233,16 +226,11 @@ class GroupSearch {
     std::array<std::int32_t, 3> before{};
     bool any = false;
     for (Collisions rows; stream.read(rows);) {
-      for (const Vec3& point : rows.xyz) {
-        std::array<std::int32_t, 3> cube{};
-        for (int k = 0; k < 3; ++k) {
-          const auto q = quantum_at(header_.quantisation, k, point[k]);
-          if (!q) {
-            refuse(result_.reader().name(),
-                   "/collisions/xyz: expected a whole multiple of the scale above the offset");
-          }
-          cube[static_cast<std::size_t>(k)] = lattice_.cube_of(k, *q);
-        }
+      std::vector<QuantumPoint> quanta(rows.size());
+      requantize(result_.reader(), rows, quanta);
+      for (const auto& [q] : quanta) {
+        const std::array<std::int32_t, 3> cube{lattice_.cube_of(0, q[0]), lattice_.cube_of(1, q[1]),
+                                               lattice_.cube_of(2, q[2])};
         if (any && cube == before) continue;
         any = true;
         before = cube;
@@ -328,20 +316,6 @@ class GroupSearch {
       if (axis != ahead) continue;
       visit(turned_round(turns_left, up_is_last ? a : b),
             turned_round(turns_up, up_is_last ? b : a), cells.parts[i]);
-    }
-  }
-
-  void list_middles() {
-    std::vector<std::size_t> next;  // where the next cube of each listed group goes
-    std::size_t listed = 0;
-    for (const UnseenGroup& group : out_.listed) {
-      next.push_back(listed);
-      listed += group.cubes;
-    }
-    out_.middles.resize(listed);
-    for (std::size_t i = 0; i < size(); ++i) {
-      const UnseenGroup* group = listed_of(i);
-      if (group != nullptr) out_.middles[next[listed_at_[group->id]]++] = middles_[i];
     }
   }
 
