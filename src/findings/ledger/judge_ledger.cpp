@@ -1,6 +1,7 @@
 #include "findings/ledger/judge_ledger.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -21,18 +22,9 @@ constexpr double kChangeRounding = 1e-6;
 
 /// Which of several statuses counts: the strictest.
 int strictness(LedgerStatus status) {
-  switch (status) {
-    case LedgerStatus::kWorse:
-      return 4;
-    case LedgerStatus::kExpired:
-      return 3;
-    case LedgerStatus::kOpen:
-      return 2;
-    case LedgerStatus::kNew:
-      return 1;
-    default:
-      return 0;
-  }
+  using enum LedgerStatus;
+  constexpr std::array kFromStrictest{kWorse, kExpired, kOpen, kNew};
+  return static_cast<int>(kFromStrictest.end() - std::ranges::find(kFromStrictest, status));
 }
 
 /// A row as far as matching needs it.
@@ -212,10 +204,8 @@ class LedgerJudge {
            (std::isinf(now) ? ", and none is known now" : " and is " + length(now));
   }
 
-  /// What lies within the gap of a row's places.
-  struct Contacts {
-    std::set<std::uint32_t> conflicts;  ///< 0 for small groups
-  };
+  /// The conflicts of which points lie within the gap of a row's places; 0 for small groups.
+  using Contacts = std::set<std::uint32_t>;
 
   void judge_rows_without_conflict(Ledger& out) const {
     std::vector<std::size_t> open;
@@ -232,7 +222,7 @@ class LedgerJudge {
     const std::vector<Contacts> contacts = contacts_of(open);
     std::vector<std::size_t> alone;
     for (std::size_t i = 0; i < open.size(); ++i) {
-      if (contacts[i].conflicts.empty()) {
+      if (contacts[i].empty()) {
         alone.push_back(open[i]);
       } else {
         name(contacts[i], out.rows[open[i]], out);
@@ -280,8 +270,8 @@ class LedgerJudge {
     }
     for_each_point(found_, [&](const PointRow& point) {
       for (std::size_t i = 0; i < rows.size(); ++i) {
-        if (!reach[i].contains(point.xyz) || out[i].conflicts.contains(point.conflict)) continue;
-        if (rows_[rows[i]].gap->near(point.xyz)) out[i].conflicts.insert(point.conflict);
+        if (!reach[i].contains(point.xyz) || out[i].contains(point.conflict)) continue;
+        if (rows_[rows[i]].gap->near(point.xyz)) out[i].insert(point.conflict);
       }
     });
     return out;
@@ -290,7 +280,7 @@ class LedgerJudge {
   /// The row keeps its status, because something collides there that does not belong to it.
   static void name(const Contacts& contacts, LedgerRow& row, Ledger& out) {
     std::vector<std::string> ids;
-    for (const std::uint32_t id : contacts.conflicts) {
+    for (const std::uint32_t id : contacts) {
       if (id == 0) continue;
       ids.push_back(std::to_string(id));
       LedgerEntry& entry = out.conflicts[id - 1];
@@ -300,7 +290,7 @@ class LedgerJudge {
     }
     std::string what = ids.empty() ? "" : (ids.size() == 1 ? "conflict " : "conflicts ");
     what += format_list(ids);
-    if (contacts.conflicts.contains(0)) {
+    if (contacts.contains(0)) {
       what += std::string(ids.empty() ? "" : " and ") + "a group too small to be listed";
     }
     row.why = "points of " + what + " are there";

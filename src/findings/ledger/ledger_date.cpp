@@ -1,8 +1,9 @@
 #include "findings/ledger/ledger_date.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <string>
 
@@ -18,39 +19,28 @@ bool is_day(const Day& day) {
       .ok();
 }
 
-/// A year of two digits is one of this century.
-int full_year(int year, std::size_t digits) { return digits == 2 ? 2000 + year : year; }
-
-struct Number {
-  int value;
-  std::size_t digits;
-};
-
-/// Three numbers of digits between two equal separators; the separator is 0 for anything else.
+/// Three numbers of digits between two equal separators.
 struct ThreeNumbers {
-  std::array<Number, 3> numbers{};
+  std::array<int, 3> values{};
+  std::array<std::size_t, 3> digits{};
   char separator = 0;
 };
 
-ThreeNumbers three_numbers(std::string_view text) {
+std::optional<ThreeNumbers> three_numbers(std::string_view text) {
   ThreeNumbers out;
   const std::size_t first = text.find_first_of("-./");
-  if (first == std::string_view::npos) return {};
-  const char separator = text[first];
-  const std::size_t second = text.find(separator, first + 1);
-  if (second == std::string_view::npos) return {};
+  if (first == std::string_view::npos) return std::nullopt;
+  out.separator = text[first];
+  const std::size_t second = text.find(out.separator, first + 1);
+  if (second == std::string_view::npos) return std::nullopt;
   const std::array parts{text.substr(0, first), text.substr(first + 1, second - first - 1),
                          text.substr(second + 1)};
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::string_view part = parts[i];
-    if (part.empty() || part.size() > 4) return {};
-    const auto [end, error] =
-        std::from_chars(part.data(), part.data() + part.size(), out.numbers[i].value);
-    if (error != std::errc() || end != part.data() + part.size()) return {};
-    if (out.numbers[i].value < 0) return {};
-    out.numbers[i].digits = part.size();
+    const auto read = parts[i].size() > 4 ? std::nullopt : parse_count(parts[i]);
+    if (!read) return std::nullopt;
+    out.values[i] = static_cast<int>(*read);
+    out.digits[i] = parts[i].size();
   }
-  out.separator = separator;
   return out;
 }
 
@@ -63,22 +53,23 @@ std::optional<WrittenDay> day_of(std::string_view text) {
   if (text.size() > 10 && text[4] == '-' && (text[10] == 'T' || text[10] == ' ')) {
     text = text.substr(0, 10);
   }
-  const ThreeNumbers read = three_numbers(text);
-  const auto& [a, b, c] = read.numbers;
-  if (read.separator == 0) return std::nullopt;
+  const auto read = three_numbers(text);
+  if (!read) return std::nullopt;
+  const auto& [a, b, c] = read->values;
+  const std::size_t last_digits = read->digits[2];
+  const char separator = read->separator;
   const auto found = [](const Day& day, std::optional<DayForm> form) -> std::optional<WrittenDay> {
     return is_day(day) ? std::optional(WrittenDay{day, form}) : std::nullopt;
   };
-  if (a.digits == 4) {
-    if (read.separator == '.') return std::nullopt;
-    return found({a.value, b.value, c.value},
-                 read.separator == '-' ? DayForm::kIso : DayForm::kSlashedYear);
+  if (read->digits[0] == 4) {
+    if (separator == '.') return std::nullopt;
+    return found({a, b, c}, separator == '-' ? DayForm::kIso : DayForm::kSlashedYear);
   }
-  if (c.digits != 4 && c.digits != 2) return std::nullopt;
-  const int year = full_year(c.value, c.digits);
-  if (read.separator == '.') return found({year, b.value, a.value}, DayForm::kDotted);
-  if (read.separator == '-' && c.digits == 2) return std::nullopt;  // its year may come first
-  const Day day_first{year, b.value, a.value}, month_first{year, a.value, b.value};
+  if (last_digits != 4 && last_digits != 2) return std::nullopt;
+  const int year = last_digits == 2 ? 2000 + c : c;  // of this century
+  if (separator == '.') return found({year, b, a}, DayForm::kDotted);
+  if (separator == '-' && last_digits == 2) return std::nullopt;  // its year may come first
+  const Day day_first{year, b, a}, month_first{year, a, b};
   if (!is_day(day_first)) return found(month_first, DayForm::kMonthFirst);
   if (!is_day(month_first)) return found(day_first, DayForm::kDayFirst);
   if (day_first == month_first) return found(day_first, std::nullopt);
@@ -86,24 +77,11 @@ std::optional<WrittenDay> day_of(std::string_view text) {
 }
 
 std::string text_of(const Day& day, DayForm form) {
-  const auto padded = [](int number, std::size_t digits) {
-    const std::string text = std::to_string(number);
-    return std::string(digits - std::min(digits, text.size()), '0') + text;
-  };
-  const std::string y = padded(day.year, 4), m = padded(day.month, 2), d = padded(day.day, 2);
-  switch (form) {
-    case DayForm::kIso:
-      break;
-    case DayForm::kSlashedYear:
-      return y + "/" + m + "/" + d;
-    case DayForm::kDotted:
-      return d + "." + m + "." + y;
-    case DayForm::kDayFirst:
-      return d + "/" + m + "/" + y;
-    case DayForm::kMonthFirst:
-      return m + "/" + d + "/" + y;
-  }
-  return y + "-" + m + "-" + d;
+  constexpr std::array kForms{"{0:04}-{1:02}-{2:02}", "{0:04}/{1:02}/{2:02}",
+                              "{2:02}.{1:02}.{0:04}", "{2:02}/{1:02}/{0:04}",
+                              "{1:02}/{2:02}/{0:04}"};
+  return fmt::format(fmt::runtime(kForms[static_cast<std::size_t>(form)]), day.year, day.month,
+                     day.day);
 }
 
 Day today() {

@@ -1,7 +1,8 @@
 #include "findings/ledger/ledger_table.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -25,14 +26,6 @@ std::string without_blanks(std::string text) {
   const auto begin = std::ranges::find_if_not(text, is_blank);
   text.erase(text.begin(), begin);
   return text;
-}
-
-/// A number with so many digits after the point.
-std::string with_digits(double value, int digits) {
-  std::array<char, 400> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), value,
-                                 std::chars_format::fixed, digits);
-  return {text.data(), end.ptr};
 }
 
 std::string in_small_letters(std::string text) {
@@ -241,9 +234,9 @@ void LedgerTable::set(std::size_t row, LedgerColumn column, std::optional<double
                       int digits) {
   std::string text;
   if (value) {
-    text = with_digits(*value, digits);
+    text = fmt::format("{:.{}f}", *value, digits);
     const std::optional<double> before = number(row, column);
-    if (before && with_digits(*before, digits) == text) return;
+    if (before && fmt::format("{:.{}f}", *before, digits) == text) return;
     if (has_decimal_commas_) std::ranges::replace(text, '.', ',');
   }
   set(row, column, text);
