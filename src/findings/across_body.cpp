@@ -21,15 +21,6 @@ namespace {
 /// computed, because of roundings.
 constexpr double kBoxRounding = 1e-6, kBoxShare = 1e-9;
 
-double squared_distance(const Vec3& x, const Box& box) {
-  double sum = 0;
-  for (int k = 0; k < 3; ++k) {
-    const double out = std::max({box.lo[k] - x[k], x[k] - box.hi[k], 0.0});
-    sum += out * out;
-  }
-  return sum;
-}
-
 /// The least squared distance of a box to the segment from a to b. Between the places where the
 /// segment crosses the planes of the box's sides it is a square function of the way, whose least
 /// value is known.
@@ -47,7 +38,7 @@ double squared_distance(const Vec3& a, const Vec3& b, const Box& box) {
       cuts[i] = s;
     }
   }
-  double least = std::min(squared_distance(a, box), squared_distance(b, box));
+  double least = std::min(least_squared_distance(box, a), least_squared_distance(box, b));
   for (std::size_t i = 0; i + 1 < count; ++i) {
     const Vec3 middle = at((cuts[i] + cuts[i + 1]) / 2);
     double square = 0, linear = 0;
@@ -58,7 +49,7 @@ double squared_distance(const Vec3& a, const Vec3& b, const Box& box) {
       linear += way[k] * (a[k] - side);
     }
     const double s = square > 0 ? std::clamp(-linear / square, cuts[i], cuts[i + 1]) : cuts[i];
-    least = std::min(least, squared_distance(at(s), box));
+    least = std::min(least, least_squared_distance(box, at(s)));
   }
   return least;
 }
@@ -315,7 +306,8 @@ class Viewer {
     const PullBack back(pose);
     for (const Vec3& place : places) {
       const Vec3 x = back.apply(place);
-      if (is_at_floor(x) && squared_distance(x, box_) < radius_ * radius_) add_place(x, 0, found);
+      if (is_at_floor(x) && least_squared_distance(box_, x) < radius_ * radius_)
+        add_place(x, 0, found);
     }
   }
 

@@ -32,21 +32,21 @@ CertainPoints CertainGroup::found() {
 
 bool CertainGroup::any_group() {
   looked_at_ = points_.size();
-  const bool any = !members_of_certain_groups(points_, quantisation_, gap_, progress_).empty();
+  const PointGroups groups =
+      group_points(points_, Neighbourhood(quantisation_, gap_), kLeastCertainGroup, progress_);
+  const bool any = groups.count > 0;
   if (any) points_ = {};
   return any;
 }
 
-std::vector<std::uint32_t> members_of_certain_groups(std::span<const QuantumPoint> points,
-                                                     const Quantisation& quantisation, double gap,
-                                                     Progress& progress) {
-  std::vector<std::uint32_t> out;
-  if (points.size() < kLeastCertainGroup) return out;
-  const PointGroups groups =
-      group_points(points, Neighbourhood(quantisation, gap), kLeastCertainGroup, progress);
-  for (std::uint32_t i = 0; i < points.size(); ++i) {
-    if (!PointGroups::is_small(groups.of_point[i])) out.push_back(i);
-  }
+std::vector<bool> in_certain_groups(std::span<const QuantumPoint> points,
+                                    const Quantisation& quantisation, double gap,
+                                    Progress& progress, const GroupingLimit& limit,
+                                    const std::vector<bool>* only) {
+  const PointGroups groups = group_points(points, Neighbourhood(quantisation, gap),
+                                          kLeastCertainGroup, progress, limit, only);
+  std::vector<bool> out;
+  for (const std::uint32_t group : groups.of_point) out.push_back(!PointGroups::is_small(group));
   return out;
 }
 

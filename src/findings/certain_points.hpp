@@ -8,6 +8,7 @@
 #include "clearway/answer.hpp"
 #include "core/geometry/quantisation.hpp"
 #include "core/util/progress.hpp"
+#include "findings/group/point_groups.hpp"
 #include "findings/point_blocks.hpp"
 #include "io/result/result.hpp"
 
@@ -36,12 +37,13 @@ class CertainGroup {
   CertainPoints found_;
 };
 
-/// Which of these points hang together in groups of ten or more, each at most `gap` from the next;
-/// indices of `points` in no particular order. points: the stored integers of points that are
-/// certainly too close. Runs in the caller's arena of oneTBB. Throws Interrupted.
-std::vector<std::uint32_t> members_of_certain_groups(std::span<const QuantumPoint> points,
-                                                     const Quantisation& quantisation, double gap,
-                                                     Progress& progress);
+/// Whether each of these points, which are certainly too close, is one of ten or more that hang
+/// together, each at most `gap` from the next. limit, only: as group_points() takes them. Runs in
+/// the caller's arena of oneTBB. Throws Interrupted.
+std::vector<bool> in_certain_groups(std::span<const QuantumPoint> points,
+                                    const Quantisation& quantisation, double gap,
+                                    Progress& progress, const GroupingLimit& limit,
+                                    const std::vector<bool>* only);
 
 /// What the points of all these results together say, each of which has an error budget of the same
 /// query. Throws InputError as RowStream does, and Interrupted.

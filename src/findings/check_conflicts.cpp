@@ -39,6 +39,14 @@ void check_options(const ConflictOptions& options) {
   }
 }
 
+void check_hash(const ResultReader& result, const char* what, std::uint64_t is,
+                std::uint64_t searched, Remedy remedy) {
+  if (is == searched) return;
+  throw InputError(result.name() + ": is the result of another " + what + " (hash " +
+                       hash_text(searched) + ", given " + hash_text(is) + ")",
+                   remedy);
+}
+
 void check_stations(const std::vector<Pose>& poses, std::span<const double> station) {
   if (station.empty() || station.size() == poses.size()) return;
   throw UsageError(counted(station.size(), "station") + " for " + counted(poses.size(), "pose") +
@@ -86,25 +94,8 @@ void check_bodies_of(const ResultReader& result, std::span<const Body> bodies) {
   if (header.bodies.empty()) {
     refuse(result.name(), "is the result of one model, and a vehicle of several bodies is given");
   }
-  const std::uint64_t hash = hash_of_bodies(bodies);
-  if (hash == header.model_hash) return;
-  refuse(result.name(),
-         "is the result of another vehicle (hash " + hash_text(header.model_hash) + ", given " +
-             hash_text(hash) + ")",
-         Remedy::kSameModel);
+  check_hash(result, "vehicle", hash_of_bodies(bodies), header.model_hash, Remedy::kSameModel);
 }
-
-namespace {
-
-void check_hash(const ResultReader& result, const char* what, std::uint64_t is,
-                std::uint64_t searched, Remedy remedy) {
-  if (is == searched) return;
-  throw InputError(result.name() + ": is the result of another " + what + " (hash " +
-                       hash_text(searched) + ", given " + hash_text(is) + ")",
-                   remedy);
-}
-
-}  // namespace
 
 void check_searched(const ResultReader& result, const StoreReader& store, const Searched& given) {
   const ResultHeader& header = result.header();

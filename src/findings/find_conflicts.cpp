@@ -28,6 +28,7 @@
 #include "findings/conflict_rank.hpp"
 #include "findings/group/cell_grid.hpp"
 #include "findings/group/point_groups.hpp"
+#include "findings/least_places.hpp"
 #include "findings/point_blocks.hpp"
 #include "findings/row_pieces.hpp"
 #include "findings/shift/least_shift.hpp"
@@ -182,57 +183,6 @@ class ConflictMemory {
   const std::uint64_t allowed_, points_, held_;
 };
 
-/// The point of a conflict that is nearest to the model.
-struct ConflictDistance {
-  static constexpr std::uint64_t kNone = ~std::uint64_t{0};
-  double distance = 0;  ///< metres, below 0 inside solids
-  /// Source index; of equally near points the smallest.
-  std::uint64_t source = kNone;
-  std::uint32_t pose = 0;
-  Vec3 xyz{};
-  /// The body that is so near, for a vehicle.
-  std::optional<std::uint32_t> body = {};
-  std::uint64_t inside = 0;  ///< number of points with a distance below 0
-};
-
-/// The nearest points of conflicts, which several threads may offer at the same time. Most points
-/// are no nearer than what is known, and need no lock.
-class NearestPoints {
- public:
-  /// For conflicts with the numbers 1 to `conflicts`.
-  explicit NearestPoints(std::size_t conflicts)
-      : nearest_(conflicts + 1), known_(conflicts + 1), inside_(conflicts + 1) {
-    for (auto& known : known_) known = std::numeric_limits<double>::infinity();
-  }
-
-  void offer(std::uint32_t conflict, const Clearances& rows, std::size_t i) {
-    const double distance = rows.distance[i];
-    if (distance < 0) inside_[conflict].fetch_add(1, std::memory_order_relaxed);
-    if (distance > known_[conflict].load(std::memory_order_relaxed)) return;
-    locks_.hold(conflict, [&] {
-      ConflictDistance& nearest = nearest_[conflict];
-      if (nearest.source != ConflictDistance::kNone &&
-          std::pair(distance, rows.source[i]) >= std::pair(nearest.distance, nearest.source)) {
-        return;
-      }
-      nearest = {distance, rows.source[i], rows.pose[i], rows.xyz[i],
-                 rows.body.empty() ? std::nullopt : std::optional(rows.body[i])};
-      known_[conflict].store(distance, std::memory_order_relaxed);
-    });
-  }
-
-  std::vector<ConflictDistance> take() {
-    for (std::size_t i = 0; i < nearest_.size(); ++i) nearest_[i].inside = inside_[i];
-    return std::move(nearest_);
-  }
-
- private:
-  std::vector<ConflictDistance> nearest_;
-  std::vector<std::atomic<double>> known_;
-  std::vector<std::atomic<std::uint64_t>> inside_;
-  SharedLocks locks_;
-};
-
 /// Points of a result in ascending order of their source, with the conflict of each, 0 for none.
 struct JoinedPoints {
   std::vector<std::uint64_t> source;
@@ -240,9 +190,15 @@ struct JoinedPoints {
   std::size_t first = 0;  ///< below it, no source is among those of later clearances
 };
 
-/// Joins the clearances with the points, and offers them to the nearest of each conflict.
+/// The nearest point of each conflict, by its id, and how many of its points are inside solids.
+struct ConflictDistances {
+  LeastPlaces least;
+  std::vector<std::atomic<std::uint64_t>> inside;
+};
+
+/// Joins the clearances with the points.
 void join_distances(const ResultReader& result, std::array<JoinedPoints, 2> points,
-                    NearestPoints& nearest, Progress& progress) {
+                    ConflictDistances& out, Progress& progress) {
   progress.begin("distances", result.clearances(), "points");
   RowStream<Clearances> stream(result);
   for (Clearances rows; stream.read(rows);) {
@@ -257,7 +213,11 @@ void join_distances(const ResultReader& result, std::array<JoinedPoints, 2> poin
           if (*at != rows.source[i]) continue;
           const std::uint32_t conflict =
               of.conflict_of[static_cast<std::size_t>(&*at - of.source.data())];
-          if (conflict != 0) nearest.offer(conflict, rows, i);
+          if (conflict == 0) continue;
+          FoundPlace found{rows.source[i], rows.pose[i], rows.xyz[i], rows.distance[i]};
+          if (!rows.body.empty()) found.body = rows.body[i];
+          out.least.offer(conflict, found);
+          if (found.distance < 0) out.inside[conflict].fetch_add(1, std::memory_order_relaxed);
         }
       });
       of.first += static_cast<std::size_t>(std::ranges::upper_bound(left, rows.source.back()) -
@@ -358,13 +318,8 @@ class ConflictSearch {
   void group() {
     const GroupingLimit limit = memory_.at_work();
     if (header_.budget) {
-      // Keeps those of which ten or more hang together by the gap of the search.
-      const PointGroups sure =
-          group_points(quanta_, Neighbourhood(header_.quantisation, header_.gap),
-                       kLeastCertainGroup, progress_, limit, &certain_);
-      for (std::size_t row = 0; row < certain_.size(); ++row) {
-        certain_[row] = !PointGroups::is_small(sure.of_point[row]);
-      }
+      certain_ = in_certain_groups(quanta_, header_.quantisation, header_.gap, progress_, limit,
+                                   &certain_);
     }
     groups_ = group_points(quanta_, Neighbourhood(header_.quantisation, out_.gap), out_.min_points,
                            progress_, limit);
@@ -707,7 +662,6 @@ class ConflictSearch {
 
   /// Finds the shifts that free each conflict from all of its colliding points.
   void add_shifts(std::span<const std::optional<PointBlocks>> trees) {
-    const double most = kMostOwnShift / metre_;
     progress_.begin("shifts", out_.listed.size(), "conflicts");
     std::vector<PointsToFree> sets;
     std::uint64_t pairs = 0;
@@ -717,9 +671,15 @@ class ConflictSearch {
       const std::uint64_t poses = conflict.last_pose - conflict.first_pose + std::uint64_t{1};
       pairs += conflict.colliding * poses;
     }
-    const LeastShift shifts(bodies_, poses_, direction_to_left(options_.forward, options_.up),
-                            header_.radius, header_.between_poses, pairs, options_.threads);
-    const std::vector<SideShifts> free = shifts.least(sets, most, progress_);
+    const ShiftQuestion asked{.bodies = bodies_,
+                              .path = poses_,
+                              .left = direction_to_left(options_.forward, options_.up),
+                              .radius = header_.radius,
+                              .ways = header_.between_poses,
+                              .pairs = pairs,
+                              .most = kMostOwnShift / metre_,
+                              .threads = options_.threads};
+    const std::vector<SideShifts> free = least_shifts(asked, sets, progress_);
     for (std::size_t i = 0; i < free.size(); ++i) {
       Conflict& conflict = out_.listed[i];
       if (conflict.colliding == 0) continue;
@@ -752,26 +712,26 @@ class ConflictSearch {
 
   void add_distances() {
     if (!(header_.clearance > 0)) return;
-    NearestPoints nearest(out_.listed.size());
+    ConflictDistances distances{LeastPlaces(out_.listed.size() + 1),
+                                std::vector<std::atomic<std::uint64_t>>(out_.listed.size() + 1)};
     const std::span<const std::uint32_t> of_row = of_row_;
     join_distances(reader_,
                    {{{reader_.column(&Collisions::source), of_row.first(out_.colliding_points)},
                      {reader_.column(&Nearby::source), of_row.subspan(out_.colliding_points)}}},
-                   nearest, progress_);
-    const std::vector<ConflictDistance> least = nearest.take();
+                   distances, progress_);
     for (Conflict& conflict : out_.listed) {
-      const ConflictDistance& found = least[conflict.id];
+      const std::optional<FoundPlace>& found = distances.least[conflict.id];
       if (header_.model_solids > 0) {
-        conflict.depth = std::max(0.0, -found.distance);
-        conflict.points_inside = found.inside;
+        conflict.depth = found ? std::max(0.0, -found->distance) : 0.0;
+        conflict.points_inside = distances.inside[conflict.id];
       }
-      if (found.source == ConflictDistance::kNone) continue;
-      conflict.least_distance = found.distance;
-      conflict.nearest_pose = found.pose;
-      conflict.nearest_source = found.source;
-      conflict.nearest_point = found.xyz;
-      if (found.body) conflict.body = found.body;
-      conflict.encroachment = header_.radius - found.distance;
+      if (!found) continue;
+      conflict.least_distance = found->distance;
+      conflict.nearest_pose = found->pose;
+      conflict.nearest_source = found->source;
+      conflict.nearest_point = found->xyz;
+      if (!header_.bodies.empty()) conflict.body = found->body;
+      conflict.encroachment = header_.radius - found->distance;
       conflict.encroachment_is = bound_of(conflict);
     }
   }

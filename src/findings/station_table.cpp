@@ -1,14 +1,12 @@
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/spin_mutex.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <deque>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,64 +20,20 @@
 #include "core/trajectory/follow/path_stations.hpp"
 #include "core/util/format.hpp"
 #include "core/util/progress.hpp"
-#include "core/util/tsan_annotations.hpp"
 #include "findings/certain_points.hpp"
 #include "findings/check_conflicts.hpp"
+#include "findings/least_places.hpp"
 #include "findings/overthrow.hpp"
 #include "findings/path_rows.hpp"
 #include "findings/row_pieces.hpp"
 #include "findings/touched_first.hpp"
 #include "findings/unseen_lattice.hpp"
-#include "io/files/input_error.hpp"
 #include "io/files/thread_limit.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/result.hpp"
-#include "io/scans/requantize.hpp"
 
 namespace clearway {
 namespace {
-
-/// Keeps the nearer of two places, or of equally near ones that with the smaller source.
-void keep_least(const FoundPlace& found, std::optional<FoundPlace>& least) {
-  const auto key = [](const FoundPlace& of) { return std::pair(of.distance, of.source); };
-  if (!least || key(found) < key(*least)) least = found;
-}
-
-/// The least distances of one stretch, which several threads may lower at the same time. Most
-/// places are no nearer than what is known, and need no lock.
-class SharedLeast {
- public:
-  enum Which : std::uint8_t { kLeast, kLeft, kRight, kAbove };
-
-  explicit SharedLeast(StationRow& row) : places_{&row.least, &row.left, &row.right, &row.above} {
-    for (std::size_t k = 0; k < places_.size(); ++k) {
-      if (*places_[k]) known_[k] = (*places_[k])->distance;
-    }
-  }
-
-  /// Whether a place at this distance may be kept as one of these.
-  bool may_keep(double distance, Which which) const {
-    return distance <= known_[which].load(std::memory_order_relaxed);
-  }
-  bool may_keep_side(double distance) const {
-    return may_keep(distance, kLeft) || may_keep(distance, kRight) || may_keep(distance, kAbove);
-  }
-
-  void keep(const FoundPlace& found, Which which) {
-    if (!may_keep(found.distance, which)) return;
-    const tbb::spin_mutex::scoped_lock held(lock_);
-    acquire(&lock_);
-    keep_least(found, *places_[which]);
-    known_[which].store((*places_[which])->distance, std::memory_order_relaxed);
-    release(&lock_);
-  }
-
- private:
-  static constexpr double kMost = std::numeric_limits<double>::infinity();
-  std::array<std::optional<FoundPlace>*, 4> places_;
-  std::array<std::atomic<double>, 4> known_{kMost, kMost, kMost, kMost};
-  tbb::spin_mutex lock_;
-};
 
 /// One call of station_table(), step by step.
 class TableMaker {
@@ -94,6 +48,7 @@ class TableMaker {
         threads_(threads),
         progress_(progress),
         rows_(chainage_of(poses), options.every),
+        places_(kPlaces * rows_.size()),
         bodies_(moving_bodies(kNoModel, poses, options.bodies)) {
     for (const Body& body : options.bodies) boxes_.push_back(box_of(body.model.vertices));
     if (header_.bodies.empty()) boxes_.push_back(result.model_box());
@@ -106,6 +61,7 @@ class TableMaker {
     if (rows_.size() == 0) return std::move(table_);
     add_profile();
     add_distances();
+    take_places();
     add_overthrow();
     judge();
     limit_least();
@@ -144,8 +100,8 @@ class TableMaker {
       throw_if_stopped(progress_);
       for (std::size_t i = 0; i < rows.size(); ++i, ++pose) {
         if (rows.source[i] == Profile::kNoPoint) continue;
-        keep_least({rows.source[i], pose, rows.xyz[i], rows.distance[i]},
-                   table_.rows[rows_.of_pose(pose)].least);
+        places_.offer(kPlaces * rows_.of_pose(pose),
+                      {rows.source[i], pose, rows.xyz[i], rows.distance[i]});
       }
       progress_.advance(rows.size());
     }
@@ -153,7 +109,7 @@ class TableMaker {
     if (!decides_by_profile()) return;
     out_of_radius_.resize(rows_.size());
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      const auto& least = table_.rows[i].least;
+      const auto& least = places_[kPlaces * i];
       out_of_radius_[i] = !least || !(least->distance < header_.radius);
     }
   }
@@ -197,8 +153,6 @@ class TableMaker {
                       ": without the bodies of the vehicle the table cannot say which points are "
                       "to the left, to the right or above"));
     }
-    std::deque<SharedLeast> leasts;
-    for (StationRow& row : table_.rows) leasts.emplace_back(row);
     std::vector<Box> boxes;
     for (const Box& box : boxes_) boxes.push_back(turned(box, options_.forward, options_.up));
     progress_.begin("distances", reader_.clearances(), "points");
@@ -207,11 +161,11 @@ class TableMaker {
       throw_if_stopped(progress_);
       in_pieces(rows.size(), [&](std::size_t first, std::size_t end) {
         for (std::size_t i = first; i < end; ++i) {
-          SharedLeast& least = leasts[rows_.of_pose(rows.pose[i])];
           FoundPlace found{rows.source[i], rows.pose[i], rows.xyz[i], rows.distance[i]};
           if (!rows.body.empty()) found.body = rows.body[i];
-          least.keep(found, SharedLeast::kLeast);
-          if (sides && least.may_keep_side(found.distance)) keep_side(found, boxes, least);
+          const std::size_t first_place = kPlaces * rows_.of_pose(found.pose);
+          places_.offer(first_place, found);
+          if (sides) offer_side(found, boxes, first_place);
         }
       });
       progress_.advance(rows.size());
@@ -220,17 +174,28 @@ class TableMaker {
   }
 
   /// boxes: of the bodies, along the axes of ahead_left_up().
-  void keep_side(const FoundPlace& found, std::span<const Box> boxes, SharedLeast& least) const {
+  void offer_side(const FoundPlace& found, std::span<const Box> boxes, std::size_t first_place) {
+    const auto may_be_least = [&](std::size_t side) {
+      return places_.may_be_least(first_place + side, found.distance);
+    };
+    if (!may_be_least(1) && !may_be_least(2) && !may_be_least(3)) return;
     const Pose* pose = bodies_[found.body].pose_at(found.pose);
     if (pose == nullptr) return;
     const Vec3 there = ahead_left_up(found.xyz, *pose, options_.forward, options_.up);
     const Box& box = boxes[found.body];
-    if (there.y > box.hi.y) {
-      least.keep(found, SharedLeast::kLeft);
-    } else if (there.y < box.lo.y) {
-      least.keep(found, SharedLeast::kRight);
-    } else if (there.z > box.hi.z) {
-      least.keep(found, SharedLeast::kAbove);
+    const std::size_t side = there.y > box.hi.y   ? 1
+                             : there.y < box.lo.y ? 2
+                             : there.z > box.hi.z ? 3
+                                                  : 0;
+    if (side > 0) places_.offer(first_place + side, found);
+  }
+
+  void take_places() {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      StationRow& row = table_.rows[i];
+      const auto place = [&](std::size_t k) { return places_[kPlaces * i + k]; };
+      std::tie(row.least, row.left, row.right, row.above) =
+          std::tuple(place(0), place(1), place(2), place(3));
     }
   }
 
@@ -281,13 +246,10 @@ class TableMaker {
 
   /// Calls visit(rows, i, row of the table, sets) for every row of a table of the result, by many
   /// threads, and adds what they put into their sets to these.
-  template <typename Rows, std::size_t kSets, typename Visit>
-  void add_rows(const std::array<RowSet*, kSets>& sets, const Visit& visit) {
-    std::array<RowSet, kSets> none = [&]<std::size_t... K>(std::index_sequence<K...>) {
-      return std::array<RowSet, kSets>{((void)K, RowSet(rows_.size()))...};
-    }
-    (std::make_index_sequence<kSets>());
-    tbb::enumerable_thread_specific<std::array<RowSet, kSets>> of_threads(none);
+  template <typename Rows, typename Visit>
+  void add_rows(const std::vector<RowSet*>& sets, const Visit& visit) {
+    tbb::enumerable_thread_specific<std::vector<RowSet>> of_threads(
+        std::vector<RowSet>(sets.size(), RowSet(rows_.size())));
     RowStream<Rows> stream(reader_);
     std::size_t before = 0;
     for (Rows rows; stream.read(rows); before += rows.size()) {
@@ -299,7 +261,7 @@ class TableMaker {
       progress_.advance(rows.size());
     }
     for (const auto& own : of_threads) {
-      for (std::size_t k = 0; k < kSets; ++k) {
+      for (std::size_t k = 0; k < sets.size(); ++k) {
         for (std::size_t row = 0; row < rows_.size(); ++row) {
           if (own[k].contains(row)) sets[k]->add(row);
         }
@@ -329,37 +291,15 @@ class TableMaker {
   /// With an error budget, whether each colliding point is one of ten or more that hang together
   /// and are certainly too close.
   std::vector<bool> find_certain() {
-    std::vector<QuantumPoint> quanta;
-    std::vector<std::uint64_t> row_of;
-    std::uint64_t row = 0;
+    std::vector<QuantumPoint> quanta(reader_.collisions());
+    std::vector<bool> certain;
     RowStream<Collisions> stream(reader_);
     for (Collisions rows; stream.read(rows);) {
       throw_if_stopped(progress_);
-      for (std::size_t i = 0; i < rows.size(); ++i, ++row) {
-        if (rows.certain[i] == 0) continue;
-        quanta.push_back(quanta_of(rows, i));
-        row_of.push_back(row);
-      }
+      requantize(reader_, rows, std::span(quanta).subspan(certain.size()));
+      for (const std::uint8_t one : rows.certain) certain.push_back(one != 0);
     }
-    std::vector<bool> out(reader_.collisions());
-    for (const std::uint32_t member :
-         members_of_certain_groups(quanta, header_.quantisation, header_.gap, progress_)) {
-      out[row_of[member]] = true;
-    }
-    return out;
-  }
-
-  QuantumPoint quanta_of(const Collisions& rows, std::size_t i) const {
-    QuantumPoint out{};
-    for (int k = 0; k < 3; ++k) {
-      const auto q = quantum_at(header_.quantisation, k, rows.xyz[i][k]);
-      if (!q) {
-        refuse(reader_.name(), "/collisions/xyz, source " + std::to_string(rows.source[i]) +
-                                   ": expected a whole multiple of the scale above the offset");
-      }
-      out.q[k] = *q;
-    }
-    return out;
+    return in_certain_groups(quanta, header_.quantisation, header_.gap, progress_, {}, &certain);
   }
 
   void judge() {
@@ -419,10 +359,10 @@ class TableMaker {
   void find_touched(RowSet& conflict, RowSet& near) {
     const std::vector<bool> certain = header_.budget ? find_certain() : std::vector<bool>();
     progress_.begin("contacts", reader_.collisions(), "points");
-    add_rows<Collisions, 2>({&conflict, &near}, [&](const Collisions& rows, std::size_t i,
-                                                    std::size_t row, auto& sets) {
-      add_touched(rows, i, sets[!header_.budget || certain[row] ? 0 : 1]);
-    });
+    add_rows<Collisions>({&conflict, &near},
+                         [&](const Collisions& rows, std::size_t i, std::size_t row, auto& sets) {
+                           add_touched(rows, i, sets[!header_.budget || certain[row] ? 0 : 1]);
+                         });
     progress_.end();
   }
 
@@ -434,11 +374,11 @@ class TableMaker {
     if (!header_.budget) return;
     const double distance = header_.budget->near_radius(header_.radius);
     progress_.begin("near points", reader_.collisions() + reader_.near(), "points");
-    add_rows<Collisions, 1>({&near},
-                            [&](const Collisions& rows, std::size_t i, std::size_t, auto& sets) {
-                              add_near(rows.xyz[i], distance, 0, rows_.size(), sets[0]);
-                            });
-    add_rows<Nearby, 1>({&near}, [&](const Nearby& rows, std::size_t i, std::size_t, auto& sets) {
+    add_rows<Collisions>({&near},
+                         [&](const Collisions& rows, std::size_t i, std::size_t, auto& sets) {
+                           add_near(rows.xyz[i], distance, 0, rows_.size(), sets[0]);
+                         });
+    add_rows<Nearby>({&near}, [&](const Nearby& rows, std::size_t i, std::size_t, auto& sets) {
       const auto first = rows_of(rows.first_pose[i]);
       add(first, sets[0]);
       add_near(rows.xyz[i], distance, first[1], rows_.size(), sets[0]);
@@ -518,6 +458,9 @@ class TableMaker {
   const int threads_;
   Progress& progress_;
   const PathRows rows_;
+  /// For each row the nearest place of all, to the left, to the right, and above
+  static constexpr std::size_t kPlaces = 4;
+  LeastPlaces places_;
   const std::vector<MovingBody> bodies_;
   std::vector<Box> boxes_;  ///< one for each of bodies_, or none where they are not known
   std::optional<BoxReach> reach_;

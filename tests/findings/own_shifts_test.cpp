@@ -31,7 +31,7 @@ struct ShiftScene {
   Vec3 left{0, 1, 0};
   double radius = 0.1, most = 2;
   bool ways = false;
-  std::uint64_t pairs = 0;  ///< as LeastShift is told
+  std::uint64_t pairs = 0;  ///< as least_shifts() is told
 
   std::vector<MovingBody> bodies() const {
     std::vector<MovingBody> out;
@@ -59,9 +59,9 @@ struct ShiftScene {
                            ranges[i].second});
       }
       const std::vector<MovingBody> moving = bodies();
-      const LeastShift least(moving, path, left, radius, ways, pairs, threads);
       NoProgress progress;
-      return least.least(to_free, most, progress);
+      return least_shifts({moving, path, left, radius, ways, pairs, most, threads}, to_free,
+                          progress);
     });
   }
 };

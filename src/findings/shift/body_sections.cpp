@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "core/geometry/point_box.hpp"
 #include "core/geometry/triangle_box.hpp"
@@ -86,6 +87,11 @@ void for_bands(std::int32_t rows, Run run) {
 
 }  // namespace
 
+BodySections::Level::Level(std::int32_t rows_of, std::int32_t columns_of)
+    : rows(rows_of),
+      columns(columns_of),
+      cells(static_cast<std::size_t>(rows) * static_cast<std::size_t>(columns), kEmptyColumn) {}
+
 BodySections::BodySections(const Model& model, int axis, double radius, std::size_t most_cells)
     : axis_(axis), row_axis_((axis + 1) % 3), column_axis_((axis + 2) % 3) {
   const std::vector<Triangle> triangles = triangles_of(model);
@@ -100,11 +106,8 @@ BodySections::BodySections(const Model& model, int axis, double radius, std::siz
   first_column_ = box.lo[column_axis_] - 0.31 * cell_;
   bin_ = size[axis_] * (1 + kShareOfCell) / kBins;
   first_bin_ = box.lo[axis_];
-  Level thin{static_cast<std::int32_t>(rows / cell_) + 2,
-             static_cast<std::int32_t>(columns / cell_) + 2,
-             {}};
-  thin.cells.assign(static_cast<std::size_t>(thin.rows) * static_cast<std::size_t>(thin.columns),
-                    kEmptyColumn);
+  Level thin(static_cast<std::int32_t>(rows / cell_) + 2,
+             static_cast<std::int32_t>(columns / cell_) + 2);
   levels_.push_back(thin);
   if (triangles.empty()) {
     add_points(model, thin);
@@ -133,10 +136,8 @@ void BodySections::add_points(const Model& model, Level& thin) const {
     for (const Vec3& m : model.vertices) {
       const std::int32_t row = row_of(m[row_axis_]);
       if (row < begin || row >= end) continue;
-      Column& cell =
-          thin.cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(thin.columns) +
-                     static_cast<std::size_t>(column_of(m[column_axis_]))];
-      unite(cell, {m[axis_], m[axis_], bins_of(m[axis_], m[axis_])});
+      unite(thin.at(row, column_of(m[column_axis_])),
+            {m[axis_], m[axis_], bins_of(m[axis_], m[axis_])});
     }
   });
 }
@@ -151,31 +152,22 @@ void BodySections::add_triangles(const Model& model, Level& thin) const {
   std::ranges::stable_sort(order, {}, solid_of);
   const double slack = kShareOfCell * cell_;
   for_bands(thin.rows, [&](std::int32_t begin, std::int32_t end) {
-    std::vector<Column> inside(
-        static_cast<std::size_t>(end - begin) * static_cast<std::size_t>(thin.columns),
-        kEmptyColumn);
-    std::vector<std::size_t> met;
+    Level inside(end - begin, thin.columns);
+    std::vector<std::array<std::int32_t, 2>> met;
     std::uint32_t solid = kNoSolid;
-    const std::size_t first =
-        static_cast<std::size_t>(begin) * static_cast<std::size_t>(thin.columns);
     const auto end_solid = [&] {
-      for (const std::size_t at : met) {
-        inside[at].bins = bins_of(inside[at].from, inside[at].to);
-        unite(thin.cells[first + at], inside[at]);
-        inside[at] = kEmptyColumn;
+      for (const auto& [row, column] : met) {
+        Column& filled = inside.at(row - begin, column);
+        filled.bins = bins_of(filled.from, filled.to);
+        unite(thin.at(row, column), std::exchange(filled, kEmptyColumn));
       }
       met.clear();
     };
     const auto add = [&](std::int32_t row, std::int32_t column, double from, double to) {
-      const std::size_t at =
-          static_cast<std::size_t>(row - begin) * static_cast<std::size_t>(thin.columns) +
-          static_cast<std::size_t>(column);
-      if (solid == kNoSolid) {
-        unite(thin.cells[first + at], {from, to, bins_of(from, to)});
-        return;
-      }
-      if (inside[at].from > inside[at].to) met.push_back(at);
-      unite(inside[at], {from, to, 0});
+      if (solid == kNoSolid) return unite(thin.at(row, column), {from, to, bins_of(from, to)});
+      Column& filled = inside.at(row - begin, column);
+      if (filled.from > filled.to) met.push_back({row, column});
+      unite(filled, {from, to, 0});
     };
     for (const std::uint32_t t : order) {
       if (solid_of(t) != solid) {
@@ -239,15 +231,11 @@ void BodySections::grow(const Level& thin, double radius) {
   for_bands(thin.rows, [&](std::int32_t begin, std::int32_t end) {
     for (std::int32_t row = begin; row < end; ++row) {
       for (std::int32_t column = 0; column < thin.columns; ++column) {
-        Column& cell =
-            out.cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(thin.columns) +
-                      static_cast<std::size_t>(column)];
+        Column& cell = out.at(row, column);
         for (const Offset& offset : offsets) {
           const std::int32_t r = row + offset.row, c = column + offset.column;
           if (r < 0 || r >= thin.rows || c < 0 || c >= thin.columns) continue;
-          const Column& from =
-              thin.cells[static_cast<std::size_t>(r) * static_cast<std::size_t>(thin.columns) +
-                         static_cast<std::size_t>(c)];
+          const Column& from = thin.at(r, c);
           if (from.bins == 0) continue;
           unite(cell, {from.from - offset.reach, from.to + offset.reach,
                        widened(from.bins, offset.steps)});
@@ -260,17 +248,10 @@ void BodySections::grow(const Level& thin, double radius) {
 void BodySections::add_levels() {
   while (levels_.back().rows > 2 || levels_.back().columns > 2) {
     const Level& fine = levels_.back();
-    Level coarse{(fine.rows + 1) / 2, (fine.columns + 1) / 2, {}};
-    coarse.cells.assign(
-        static_cast<std::size_t>(coarse.rows) * static_cast<std::size_t>(coarse.columns),
-        kEmptyColumn);
+    Level coarse((fine.rows + 1) / 2, (fine.columns + 1) / 2);
     for (std::int32_t row = 0; row < fine.rows; ++row) {
       for (std::int32_t column = 0; column < fine.columns; ++column) {
-        unite(coarse.cells[static_cast<std::size_t>(row / 2) *
-                               static_cast<std::size_t>(coarse.columns) +
-                           static_cast<std::size_t>(column / 2)],
-              fine.cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(fine.columns) +
-                         static_cast<std::size_t>(column)]);
+        unite(coarse.at(row / 2, column / 2), fine.at(row, column));
       }
     }
     levels_.push_back(std::move(coarse));
@@ -300,8 +281,7 @@ BodySections::Column BodySections::column(const Box& box) const {
   const Level& at = levels_[level];
   for (std::int32_t row = row_from; row <= row_to; ++row) {
     for (std::int32_t column = column_from; column <= column_to; ++column) {
-      unite(out, at.cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(at.columns) +
-                          static_cast<std::size_t>(column)]);
+      unite(out, at.at(row, column));
     }
   }
   return out;

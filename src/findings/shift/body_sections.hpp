@@ -37,6 +37,16 @@ class BodySections {
   struct Level {
     std::int32_t rows, columns;
     std::vector<Column> cells;
+
+    /// Cells without anything.
+    Level(std::int32_t rows_of, std::int32_t columns_of);
+    Column& at(std::int32_t row, std::int32_t column) {
+      return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+                   static_cast<std::size_t>(column)];
+    }
+    const Column& at(std::int32_t row, std::int32_t column) const {
+      return const_cast<Level&>(*this).at(row, column);
+    }
   };
   void add_points(const Model& model, Level& thin) const;
   void add_triangles(const Model& model, Level& thin) const;

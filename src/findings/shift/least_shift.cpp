@@ -5,9 +5,12 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "core/geometry/chord_pose.hpp"
 #include "core/geometry/inside.hpp"
@@ -126,23 +129,21 @@ struct Interval {
   }
 };
 
-}  // namespace
-
 /// A pose of a body, or a place between two, seen from the body.
-struct LeastShift::Instant {
+struct Instant {
   PullBack back;
   Vec3 way;  ///< the motion of the body in its own frame for each metre of the shift
 };
 
 /// Points of a body's frame that move by at least `way` and at most `most_way` for each metre that
 /// the body is shifted, in the opposite direction.
-struct LeastShift::Bounds {
+struct Bounds {
   Box box;
   Vec3 way, most_way;
 };
 
 /// The model of a body with its trees, in the body's own frame.
-class LeastShift::Shape {
+class Shape {
  public:
   Shape(const MovingBody& body, int axis, double radius, std::size_t most_columns, int threads)
       : radius_(radius),
@@ -156,6 +157,13 @@ class LeastShift::Shape {
     box_ = (triangles_.size() > 0 ? triangles_.box() : points_.box()).grown(radius);
     sections_.emplace(body.model, axis, radius, most_columns);
   }
+
+  /// The first pose of a chunk of the path, and the box of what the body comes near there.
+  struct Chunk {
+    std::uint32_t first;
+    Box box;
+  };
+  std::vector<Chunk> chunks;
 
   bool is_empty() const { return points_.size() == 0 && triangles_.size() == 0; }
   /// All places at which something may collide.
@@ -234,20 +242,14 @@ class LeastShift::Shape {
       return first_of >= 64 ? 0 : ~std::uint64_t{0} << std::max(0, first_of);
     };
     if ((column.bins & from(lowest) & ~from(highest + 1)) != 0) return;
-    if (points.way[axis_] > 0) {
-      const std::uint64_t rest = column.bins & ~from(lowest);
-      if (rest == 0) {
-        out = {kEndless, -kEndless};
-        return;
-      }
+    const bool to_left = points.way[axis_] > 0;
+    const std::uint64_t rest = column.bins & (to_left ? ~from(lowest) : from(highest + 1));
+    if (rest == 0) {
+      out = {kEndless, -kEndless};
+    } else if (to_left) {
       const double upper = first + (64 - std::countl_zero(rest) + kShare) * bin;
       out.keep(points.most_way[axis_], lo - upper);
     } else {
-      const std::uint64_t rest = column.bins & from(highest + 1);
-      if (rest == 0) {
-        out = {kEndless, -kEndless};
-        return;
-      }
       const double lower = first + (std::countr_zero(rest) - kShare) * bin;
       out.keep(-points.way[axis_], lower - hi);
     }
@@ -298,32 +300,25 @@ class LeastShift::Shape {
   SolidParts solids_;
   Box box_{};
   std::optional<BodySections> sections_;
-  friend class LeastShift;
-  /// The first pose of each chunk of the path, and the box of what the body comes near there.
-  struct Chunk {
-    std::uint32_t first;
-    Box box;
-  };
-  std::vector<Chunk> chunks_;
 };
 
 /// A chunk of a body's poses, from which the shifts of a set of points are found.
-struct LeastShift::Unit {
+struct Unit {
   std::uint32_t set, body, first, last;
   /// For each side, the shift up to which its points are known to be free.
   std::array<double, 2> until{-1, -1};
 };
 
 /// Finds the least shift at which no point of a set collides at some instants.
-class LeastShift::UnitSearch {
+class UnitSearch {
  public:
   UnitSearch(const Shape& shape, const PointBlocks& blocks, std::vector<Instant> instants,
-             double radius, double most, const Progress& progress)
+             const ShiftQuestion& asked, const Progress& progress)
       : shape_(shape),
         blocks_(blocks),
         instants_(std::move(instants)),
-        radius_(radius),
-        most_(most),
+        radius_(asked.radius),
+        most_(asked.most),
         progress_(progress) {}
 
   /// The least shift from `shift` on that frees the points at all instants, or any above `most`.
@@ -382,10 +377,6 @@ class LeastShift::UnitSearch {
     return out;
   }
 
-  Range range_of(std::uint32_t begin, std::uint32_t end) const;
-  void make_children(std::uint32_t range);
-  Bounds seen(const Range& range, const Box& box) const;
-
   void push(std::uint32_t range, std::uint32_t node) {
     const Bounds bounds = seen(ranges_[range], blocks_.box(node));
     const Interval found = shape_.may_collide(bounds, shift_, most_);
@@ -413,9 +404,153 @@ class LeastShift::UnitSearch {
     }
   }
 
-  void look_at(const Item& item);
-  double look_at_points(const Range& range, const PointBlocks::Node& node);
-  void look_at_pair(const Instant& instant, const Vec3& place, double& until);
+  Range range_of(std::uint32_t begin, std::uint32_t end) const {
+    Range out{};
+    out.begin = begin;
+    out.end = end;
+    const Instant& middle = instants_[begin + (end - begin) / 2];
+    set_turn(middle.back, out.turn);
+    // The middle of the body in the world. Any place near it would do.
+    const Vec3 at = shape_.box().centre();
+    double inverse[3][3];
+    const auto& t = out.turn;
+    const double determinant = t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) -
+                               t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
+                               t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]);
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) {
+        const int a = (j + 1) % 3, b = (j + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
+        inverse[k][j] = (t[a][c] * t[b][d] - t[a][d] * t[b][c]) / determinant;
+      }
+    }
+    out.centre = middle.back.position + turned_by(inverse, at);
+    if (!all_finite(out.centre)) out.centre = middle.back.position;
+    out.from = out.way = {kEndless, kEndless, kEndless};
+    out.to = out.most_way = {-kEndless, -kEndless, -kEndless};
+    for (std::uint32_t i = begin; i < end; ++i) {
+      const Instant& instant = instants_[i];
+      double turn[3][3];
+      set_turn(instant.back, turn);
+      const Vec3 offset = turned_by(turn, difference(out.centre, instant.back.position));
+      for (int k = 0; k < 3; ++k) {
+        out.from[k] = std::min(out.from[k], offset[k]);
+        out.to[k] = std::max(out.to[k], offset[k]);
+        out.way[k] = std::min(out.way[k], instant.way[k]);
+        out.most_way[k] = std::max(out.most_way[k], instant.way[k]);
+        for (int j = 0; j < 3; ++j) {
+          out.change[k][j] = std::max(out.change[k][j], std::abs(turn[k][j] - out.turn[k][j]));
+        }
+      }
+    }
+    const Vec3 half = 0.5 * shape_.box().size();
+    for (int k = 0; k < 3; ++k) {
+      double deviation = (out.to[k] - out.from[k]) / 2;
+      for (int j = 0; j < 3; ++j) deviation += out.change[k][j] * half[j];
+      out.deviation = std::max(out.deviation, deviation);
+    }
+    return out;
+  }
+
+  void make_children(std::uint32_t range) {
+    if (ranges_[range].children != 0) return;
+    const std::uint32_t begin = ranges_[range].begin, count = ranges_[range].end - begin;
+    const std::uint32_t parts = std::min(4U, count);
+    ranges_[range].children = static_cast<std::uint32_t>(ranges_.size());
+    for (std::uint32_t part = 0; part < parts; ++part) {
+      ranges_.push_back(range_of(begin + count * part / parts, begin + count * (part + 1) / parts));
+    }
+  }
+
+  Bounds seen(const Range& range, const Box& box) const {
+    const Vec3 lo = difference(box.lo, range.centre), hi = difference(box.hi, range.centre);
+    const Vec3 centre = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
+    Bounds out{{}, range.way, range.most_way};
+    for (int k = 0; k < 3; ++k) {
+      const double* turn = range.turn[k];
+      double middle = 0, extent = 0, numbers = 0, change = 0;
+      for (int j = 0; j < 3; ++j) {
+        const double far = std::abs(centre[j]) + half[j];
+        middle += turn[j] * centre[j];
+        extent += std::abs(turn[j]) * half[j];
+        numbers += std::abs(turn[j]) * far;
+        change += range.change[k][j] * far;
+      }
+      const double slack = change + kShareOfNumbers * (numbers + change + std::abs(range.from[k]) +
+                                                       std::abs(range.to[k]));
+      out.box.lo[k] = middle - extent + range.from[k] - slack;
+      out.box.hi[k] = middle + extent + range.to[k] + slack;
+    }
+    return out;
+  }
+
+  void look_at(const Item& item) {
+    const PointBlocks::Node& node = blocks_.node(item.node);
+    const Bounds bounds = seen(ranges_[item.range], blocks_.box(item.node));
+    const Vec3 half = 0.5 * bounds.box.size();
+    const double size = std::max({half.x, half.y, half.z});
+    if (size <= 8 * radius_) {
+      const double until = shift_ + std::max(radius_, size);
+      if (!shape_.may_collide_within(bounds, shift_, until)) {
+        return put({item.last, until, item.range, item.node});
+      }
+    }
+    const bool is_block = blocks_.is_block(item.node);
+    const Range& range = ranges_[item.range];
+    const bool is_short = range.is_one() || range.deviation <= size / 4;
+    if (!is_block && is_short) {
+      push(item.range, 2 * item.node + 1);
+      push(item.range, 2 * item.node + 2);
+      return;
+    }
+    if (is_short || (is_block && range.end - range.begin <= 4)) {
+      const double before = shift_, until = look_at_points(range, node);
+      if (until <= shift_ && shift_ > before) {
+        // A point that was free may be blocked now, because another one has made the shift grow.
+        push(item.range, item.node);
+      } else if (until < kEndless) {
+        put({item.last, std::max(until, std::nextafter(shift_, kEndless)), item.range, item.node});
+      }
+      return;
+    }
+    make_children(item.range);
+    const std::uint32_t children = ranges_[item.range].children;
+    const std::uint32_t count = std::min(4U, ranges_[item.range].end - ranges_[item.range].begin);
+    for (std::uint32_t i = 0; i < count; ++i) push(children + i, item.node);
+  }
+
+  /// Makes the shift grow until each point was free at all instants. Returns the shift up to which
+  /// all of them surely stay free.
+  double look_at_points(const Range& range, const PointBlocks::Node& node) {
+    double until = kEndless;
+    for (std::uint32_t p = node.begin; p < node.end && shift_ <= most_; ++p) {
+      const Vec3 place = blocks_.place(p);
+      if (!range.is_one()) {
+        const Interval found = shape_.may_collide(seen(range, {place, place}), shift_, most_);
+        if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) continue;
+        if (found.from > shift_) {
+          until = std::min(until, found.from);
+          continue;
+        }
+      }
+      for (std::uint32_t i = range.begin; i < range.end && shift_ <= most_; ++i) {
+        look_at_pair(instants_[i], place, until);
+      }
+    }
+    return until;
+  }
+
+  void look_at_pair(const Instant& instant, const Vec3& place, double& until) {
+    const Vec3 x = instant.back.apply(place);
+    const Interval found = shape_.may_collide({{x, x}, instant.way, instant.way}, shift_, most_);
+    if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) return;
+    if (found.from > shift_) {
+      until = std::min(until, found.from);
+      return;
+    }
+    const Shape::Free free = shape_.free_from({x, instant.way}, shift_, most_, guess_);
+    shift_ = free.shift;
+    until = std::min(until, free.until);
+  }
 
   struct Later {
     double first;
@@ -437,241 +572,126 @@ class LeastShift::UnitSearch {
   std::vector<Later> later_;  ///< a heap, the one with the least shift first
 };
 
-LeastShift::UnitSearch::Range LeastShift::UnitSearch::range_of(std::uint32_t begin,
-                                                               std::uint32_t end) const {
-  Range out{};
-  out.begin = begin;
-  out.end = end;
-  const Instant& middle = instants_[begin + (end - begin) / 2];
-  set_turn(middle.back, out.turn);
-  // The middle of the body in the world. Any place near it would do.
-  const Vec3 at = shape_.box().centre();
-  double inverse[3][3];
-  const auto& t = out.turn;
-  const double determinant = t[0][0] * (t[1][1] * t[2][2] - t[1][2] * t[2][1]) -
-                             t[0][1] * (t[1][0] * t[2][2] - t[1][2] * t[2][0]) +
-                             t[0][2] * (t[1][0] * t[2][1] - t[1][1] * t[2][0]);
-  for (int k = 0; k < 3; ++k) {
-    for (int j = 0; j < 3; ++j) {
-      const int a = (j + 1) % 3, b = (j + 2) % 3, c = (k + 1) % 3, d = (k + 2) % 3;
-      inverse[k][j] = (t[a][c] * t[b][d] - t[a][d] * t[b][c]) / determinant;
+/// All bodies, and where they are along the path.
+class MovingShapes {
+ public:
+  explicit MovingShapes(const ShiftQuestion& asked) : asked_(asked) {
+    const auto& [bodies, path, left, radius, ways, pairs, most, threads] = asked;
+    int axis = 0;
+    for (int k = 1; k < 3; ++k) {
+      if (std::abs(left[k]) > std::abs(left[axis])) axis = k;
     }
-  }
-  out.centre = middle.back.position + turned_by(inverse, at);
-  if (!all_finite(out.centre)) out.centre = middle.back.position;
-  out.from = out.way = {kEndless, kEndless, kEndless};
-  out.to = out.most_way = {-kEndless, -kEndless, -kEndless};
-  for (std::uint32_t i = begin; i < end; ++i) {
-    const Instant& instant = instants_[i];
-    double turn[3][3];
-    set_turn(instant.back, turn);
-    const Vec3 offset = turned_by(turn, difference(out.centre, instant.back.position));
-    for (int k = 0; k < 3; ++k) {
-      out.from[k] = std::min(out.from[k], offset[k]);
-      out.to[k] = std::max(out.to[k], offset[k]);
-      out.way[k] = std::min(out.way[k], instant.way[k]);
-      out.most_way[k] = std::max(out.most_way[k], instant.way[k]);
-      for (int j = 0; j < 3; ++j) {
-        out.change[k][j] = std::max(out.change[k][j], std::abs(turn[k][j] - out.turn[k][j]));
+    const std::size_t all_columns = std::min<std::uint64_t>(kMostColumns, pairs / kPairsOfColumn);
+    const std::size_t most_columns =
+        std::max(kLeastColumns, all_columns / std::max<std::size_t>(1, bodies.size()));
+    for (const Pose& pose : path) {
+      Pose turn = pose;
+      for (double& t : turn.translation) t = 0;
+      longest_left_ = std::max(longest_left_, length(transform(turn, left)));
+    }
+    for (const MovingBody& body : bodies) {
+      shapes_.push_back(std::make_unique<Shape>(body, axis, radius, most_columns, threads));
+      Shape& shape = *shapes_.back();
+      if (shape.is_empty()) continue;
+      std::size_t instants = kChunk;
+      for (std::uint32_t i = 0; i < path.size(); ++i) {
+        const Pose* pose = body.pose_at(i);
+        if (pose == nullptr) continue;
+        const Pose* next = ways && i + 1 < path.size() ? body.pose_at(i + 1) : nullptr;
+        const Box box = moved(shape.box(), *pose);
+        if (instants >= kChunk) {
+          shape.chunks.push_back({i, box});
+          instants = 0;
+        }
+        Box& all = shape.chunks.back().box;
+        all = all.united(box);
+        ++instants;
+        if (next == nullptr) continue;
+        all = all.united(moved(shape.box(), *next));
+        instants += static_cast<std::size_t>(steps_between(*pose, *next, radius)) - 1;
       }
     }
   }
-  const Vec3 half = 0.5 * shape_.box().size();
-  for (int k = 0; k < 3; ++k) {
-    double deviation = (out.to[k] - out.from[k]) / 2;
-    for (int j = 0; j < 3; ++j) deviation += out.change[k][j] * half[j];
-    out.deviation = std::max(out.deviation, deviation);
-  }
-  return out;
-}
 
-void LeastShift::UnitSearch::make_children(std::uint32_t range) {
-  if (ranges_[range].children != 0) return;
-  const std::uint32_t begin = ranges_[range].begin, count = ranges_[range].end - begin;
-  const std::uint32_t parts = std::min(4U, count);
-  ranges_[range].children = static_cast<std::uint32_t>(ranges_.size());
-  for (std::uint32_t part = 0; part < parts; ++part) {
-    ranges_.push_back(range_of(begin + count * part / parts, begin + count * (part + 1) / parts));
-  }
-}
+  const ShiftQuestion& asked() const { return asked_; }
+  const Shape& operator[](std::size_t body) const { return *shapes_[body]; }
 
-LeastShift::Bounds LeastShift::UnitSearch::seen(const Range& range, const Box& box) const {
-  const Vec3 lo = difference(box.lo, range.centre), hi = difference(box.hi, range.centre);
-  const Vec3 centre = 0.5 * (lo + hi), half = 0.5 * (hi - lo);
-  Bounds out{{}, range.way, range.most_way};
-  for (int k = 0; k < 3; ++k) {
-    const double* turn = range.turn[k];
-    double middle = 0, extent = 0, numbers = 0, change = 0;
-    for (int j = 0; j < 3; ++j) {
-      const double far = std::abs(centre[j]) + half[j];
-      middle += turn[j] * centre[j];
-      extent += std::abs(turn[j]) * half[j];
-      numbers += std::abs(turn[j]) * far;
-      change += range.change[k][j] * far;
-    }
-    const double slack = change + kShareOfNumbers * (numbers + change + std::abs(range.from[k]) +
-                                                     std::abs(range.to[k]));
-    out.box.lo[k] = middle - extent + range.from[k] - slack;
-    out.box.hi[k] = middle + extent + range.to[k] + slack;
-  }
-  return out;
-}
-
-void LeastShift::UnitSearch::look_at(const Item& item) {
-  const PointBlocks::Node& node = blocks_.node(item.node);
-  const Bounds bounds = seen(ranges_[item.range], blocks_.box(item.node));
-  const Vec3 half = 0.5 * bounds.box.size();
-  const double size = std::max({half.x, half.y, half.z});
-  if (size <= 8 * radius_) {
-    const double until = shift_ + std::max(radius_, size);
-    if (!shape_.may_collide_within(bounds, shift_, until)) {
-      return put({item.last, until, item.range, item.node});
-    }
-  }
-  const bool is_block = blocks_.is_block(item.node);
-  const Range& range = ranges_[item.range];
-  const bool is_short = range.is_one() || range.deviation <= size / 4;
-  if (!is_block && is_short) {
-    push(item.range, 2 * item.node + 1);
-    push(item.range, 2 * item.node + 2);
-    return;
-  }
-  if (is_short || (is_block && range.end - range.begin <= 4)) {
-    const double before = shift_, until = look_at_points(range, node);
-    if (until <= shift_ && shift_ > before) {
-      // A point that was free may be blocked now, because another one has made the shift grow.
-      push(item.range, item.node);
-    } else if (until < kEndless) {
-      put({item.last, std::max(until, std::nextafter(shift_, kEndless)), item.range, item.node});
-    }
-    return;
-  }
-  make_children(item.range);
-  const std::uint32_t children = ranges_[item.range].children;
-  const std::uint32_t count = std::min(4U, ranges_[item.range].end - ranges_[item.range].begin);
-  for (std::uint32_t i = 0; i < count; ++i) push(children + i, item.node);
-}
-
-/// Makes the shift grow until each point was free at all instants. Returns the shift up to which
-/// all of them surely stay free.
-double LeastShift::UnitSearch::look_at_points(const Range& range, const PointBlocks::Node& node) {
-  double until = kEndless;
-  for (std::uint32_t p = node.begin; p < node.end && shift_ <= most_; ++p) {
-    const Vec3 place = blocks_.place(p);
-    if (!range.is_one()) {
-      const Interval found = shape_.may_collide(seen(range, {place, place}), shift_, most_);
-      if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) continue;
-      if (found.from > shift_) {
-        until = std::min(until, found.from);
-        continue;
+  /// Adds the units of one set of points: the chunks at whose poses a body may come near it.
+  void add_units(std::uint32_t number, const PointsToFree& set, std::vector<Unit>& units) const {
+    if (set.points == nullptr) return;
+    const Box box = set.points->box(0);
+    const Vec3 reach = reach_of(box);
+    const double most_move = asked_.most * longest_left_;
+    // More than roundings can move a place
+    const double margin =
+        (most_move + asked_.radius + std::max({reach.x, reach.y, reach.z})) * 1e-12 + most_move;
+    for (std::uint32_t body = 0; body < shapes_.size(); ++body) {
+      const auto& chunks = shapes_[body]->chunks;
+      auto chunk = std::ranges::upper_bound(chunks, set.first, {}, &Shape::Chunk::first);
+      if (chunk != chunks.begin()) --chunk;
+      for (; chunk != chunks.end() && chunk->first <= set.last; ++chunk) {
+        if (!meet(chunk->box.grown(margin), box)) continue;
+        const bool is_last = chunk + 1 == chunks.end();
+        const std::uint32_t last = is_last ? set.last : std::min(set.last, (chunk + 1)->first - 1);
+        const std::uint32_t first = std::max(set.first, chunk->first);
+        if (first <= last) units.push_back({number, body, first, last});
       }
     }
-    for (std::uint32_t i = range.begin; i < range.end && shift_ <= most_; ++i) {
-      look_at_pair(instants_[i], place, until);
+  }
+
+  /// Adds the instants of a pose, and of the way to the next one.
+  void add_instants(std::size_t body, std::uint32_t i, bool with_way, double direction,
+                    std::vector<Instant>& out) const {
+    const Pose* pose = asked_.bodies[body].pose_at(i);
+    if (pose == nullptr) return;
+    add_instant(*pose, asked_.path[i], direction, out);
+    const Pose* next = with_way ? asked_.bodies[body].pose_at(i + 1) : nullptr;
+    if (next == nullptr) return;
+    const int steps = steps_between(*pose, *next, asked_.radius);
+    for (int step = 1; step < steps; ++step) {
+      const double part = static_cast<double>(step) / steps;
+      // Seen from a pose that also shrinks, places are farther away than they are, so a shift that
+      // is computed from it is never too long.
+      add_instant(pose_on_chords(*pose, *next, part),
+                  pose_on_chords(asked_.path[i], asked_.path[i + 1], part), direction, out);
     }
   }
-  return until;
-}
 
-void LeastShift::UnitSearch::look_at_pair(const Instant& instant, const Vec3& place,
-                                          double& until) {
-  const Vec3 x = instant.back.apply(place);
-  const Interval found = shape_.may_collide({{x, x}, instant.way, instant.way}, shift_, most_);
-  if (found.from > std::min(most_, found.to) || found.to <= shift_ + kStep) return;
-  if (found.from > shift_) {
-    until = std::min(until, found.from);
-    return;
-  }
-  const Shape::Free free = shape_.free_from({x, instant.way}, shift_, most_, guess_);
-  shift_ = free.shift;
-  until = std::min(until, free.until);
-}
-
-LeastShift::LeastShift(std::span<const MovingBody> bodies, const std::vector<Pose>& path,
-                       const Vec3& left, double radius, bool ways, std::uint64_t pairs, int threads)
-    : bodies_(bodies), path_(path), left_(left), radius_(radius), ways_(ways) {
-  int axis = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::abs(left[k]) > std::abs(left[axis])) axis = k;
-  }
-  const std::size_t all_columns = std::min<std::uint64_t>(kMostColumns, pairs / kPairsOfColumn);
-  const std::size_t most_columns =
-      std::max(kLeastColumns, all_columns / std::max<std::size_t>(1, bodies.size()));
-  for (const Pose& pose : path) {
+ private:
+  void add_instant(const Pose& pose, const Pose& of_path, double direction,
+                   std::vector<Instant>& out) const {
+    const double* r = of_path.rotation;
+    const Vec3& l = asked_.left;
+    const Vec3 left{r[0] * l.x + r[1] * l.y + r[2] * l.z, r[3] * l.x + r[4] * l.y + r[5] * l.z,
+                    r[6] * l.x + r[7] * l.y + r[8] * l.z};
     Pose turn = pose;
     for (double& t : turn.translation) t = 0;
-    longest_left_ = std::max(longest_left_, length(transform(turn, left)));
+    const Vec3 way = pulled_back(turn, left);
+    // Otherwise the matrix of the pose is not a rotation.
+    if (!(rounded_dot(way, way) > 0) || !all_finite(way)) return;
+    out.push_back({PullBack(pose), direction * way});
   }
-  for (const MovingBody& body : bodies) {
-    shapes_.push_back(std::make_unique<Shape>(body, axis, radius, most_columns, threads));
-    Shape& shape = *shapes_.back();
-    if (shape.is_empty()) continue;
-    std::size_t instants = kChunk;
-    for (std::uint32_t i = 0; i < path.size(); ++i) {
-      const Pose* pose = body.pose_at(i);
-      if (pose == nullptr) continue;
-      const Pose* next = ways && i + 1 < path.size() ? body.pose_at(i + 1) : nullptr;
-      const Box box = moved(shape.box(), *pose);
-      if (instants >= kChunk) {
-        shape.chunks_.push_back({i, box});
-        instants = 0;
-      }
-      Box& all = shape.chunks_.back().box;
-      all = all.united(box);
-      ++instants;
-      if (next == nullptr) continue;
-      all = all.united(moved(shape.box(), *next));
-      instants += static_cast<std::size_t>(steps_between(*pose, *next, radius)) - 1;
-    }
-  }
-}
 
-LeastShift::~LeastShift() = default;
-
-void LeastShift::add_instant(const Pose& pose, const Pose& of_path, double direction,
-                             std::vector<Instant>& out) const {
-  const double* r = of_path.rotation;
-  const Vec3 left{r[0] * left_.x + r[1] * left_.y + r[2] * left_.z,
-                  r[3] * left_.x + r[4] * left_.y + r[5] * left_.z,
-                  r[6] * left_.x + r[7] * left_.y + r[8] * left_.z};
-  Pose turn = pose;
-  for (double& t : turn.translation) t = 0;
-  const Vec3 way = pulled_back(turn, left);
-  // Otherwise the matrix of the pose is not a rotation.
-  if (!(rounded_dot(way, way) > 0) || !all_finite(way)) return;
-  out.push_back({PullBack(pose), direction * way});
-}
-
-/// Adds the instants of a pose, and of the way to the next one.
-void LeastShift::add_instants(std::size_t body, std::uint32_t i, bool with_way, double direction,
-                              std::vector<Instant>& out) const {
-  const Pose* pose = bodies_[body].pose_at(i);
-  if (pose == nullptr) return;
-  add_instant(*pose, path_[i], direction, out);
-  const Pose* next = with_way ? bodies_[body].pose_at(i + 1) : nullptr;
-  if (next == nullptr) return;
-  const int steps = steps_between(*pose, *next, radius_);
-  for (int step = 1; step < steps; ++step) {
-    const double part = static_cast<double>(step) / steps;
-    // Seen from a pose that also shrinks, places are farther away than they are, so a shift that is
-    // computed from it is never too long.
-    add_instant(pose_on_chords(*pose, *next, part), pose_on_chords(path_[i], path_[i + 1], part),
-                direction, out);
-  }
-}
+  const ShiftQuestion& asked_;
+  double longest_left_ = 0;                     ///< the greatest length of the left axis of a pose
+  std::vector<std::unique_ptr<Shape>> shapes_;  ///< one for each body
+};
 
 /// The shifts of some sets of points, round by round. Each unit of a round begins at the shift of
 /// the round before and passes only blocked shifts, so the greatest of their shifts passes only
 /// blocked shifts too, and it depends neither on threads nor on the order of units.
-class LeastShift::Round {
+class Round {
  public:
-  Round(const LeastShift& shifts, std::span<const PointsToFree> sets, double most,
+  Round(const MovingShapes& shapes, std::span<const PointsToFree> sets, std::vector<Unit> units,
         Progress& progress)
-      : shifts_(shifts), sets_(sets), most_(most), progress_(progress) {}
+      : shapes_(shapes),
+        asked_(shapes.asked()),
+        sets_(sets),
+        progress_(progress),
+        units_(std::move(units)),
+        shift_(2 * sets.size()) {}
 
-  std::vector<SideShifts> run(const std::vector<Unit>& units) {
-    units_ = units;
-    shift_.assign(2 * sets_.size(), 0);
+  std::vector<SideShifts> run() {
     find_first_bounds();
     std::vector<std::size_t> open;  // twice the unit, and one more for the right
     while (!progress_.stop_requested()) {
@@ -679,17 +699,16 @@ class LeastShift::Round {
       for (std::size_t i = 0; i < 2 * units_.size(); ++i) {
         const Unit& unit = units_[i / 2];
         const double shift = shift_[2 * unit.set + i % 2];
-        if (shift <= most_ && unit.until[i % 2] <= shift) open.push_back(i);
+        if (shift <= asked_.most && unit.until[i % 2] <= shift) open.push_back(i);
       }
       if (open.empty()) break;
       run_units(open);
     }
     std::vector<SideShifts> out(sets_.size());
     const auto found = [&](std::size_t side) {
-      return shift_[side] <= most_ ? std::optional(shift_[side]) : std::nullopt;
+      return shift_[side] <= asked_.most ? std::optional(shift_[side]) : std::nullopt;
     };
-    for (std::size_t set = 0; set < sets_.size(); ++set)
-      out[set] = {found(2 * set), found(2 * set + 1)};
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = {found(2 * i), found(2 * i + 1)};
     return out;
   }
 
@@ -704,19 +723,18 @@ class LeastShift::Round {
       const std::size_t side = 2 * unit.set + open[i] % 2;
       found[i] = shift_[side];
       if (progress_.stop_requested() || blocked[side].load(std::memory_order_relaxed)) return;
-      const auto& shape = *shifts_.shapes_[unit.body];
       std::vector<Instant> instants;
       const std::uint32_t last = sets_[unit.set].last;
       for (std::uint32_t pose = unit.first; pose <= unit.last; ++pose) {
-        shifts_.add_instants(unit.body, pose, shifts_.ways_ && pose < last, direction_of(side),
+        shapes_.add_instants(unit.body, pose, asked_.ways && pose < last, direction_of(side),
                              instants);
       }
-      UnitSearch search(shape, *sets_[unit.set].points, std::move(instants), shifts_.radius_, most_,
+      UnitSearch search(shapes_[unit.body], *sets_[unit.set].points, std::move(instants), asked_,
                         progress_);
       found[i] = search.run(shift_[side]);
       unit.until[side % 2] = search.until();
       // Whatever the other units find, the longest shift is not enough.
-      if (found[i] > most_) blocked[side].store(true, std::memory_order_relaxed);
+      if (found[i] > asked_.most) blocked[side].store(true, std::memory_order_relaxed);
     });
     for (std::size_t i = 0; i < open.size(); ++i) {
       double& shift = shift_[2 * units_[open[i] / 2].set + open[i] % 2];
@@ -731,65 +749,44 @@ class LeastShift::Round {
       if (set.points == nullptr) return;
       const std::uint64_t poses = std::uint64_t{set.last} - set.first + 1;
       if (poses <= kChunk) return;
-      for (std::size_t body = 0; body < shifts_.bodies_.size(); ++body) {
-        if (shifts_.shapes_[body]->is_empty()) continue;
+      for (std::size_t body = 0; body < asked_.bodies.size(); ++body) {
+        if (shapes_[body].is_empty()) continue;
         std::vector<Instant> instants;
         const std::uint64_t count = std::min<std::uint64_t>(kFirstPoses, poses / 4);
         for (std::uint64_t i = 0; i < count; ++i) {
           const auto pose =
               static_cast<std::uint32_t>(set.first + (2 * i + 1) * poses / (2 * count));
-          shifts_.add_instants(body, pose, false, direction_of(side), instants);
+          shapes_.add_instants(body, pose, false, direction_of(side), instants);
         }
-        UnitSearch search(*shifts_.shapes_[body], *set.points, std::move(instants), shifts_.radius_,
-                          most_, progress_);
+        UnitSearch search(shapes_[body], *set.points, std::move(instants), asked_, progress_);
         shift_[side] = search.run(shift_[side]);
       }
     });
   }
 
-  const LeastShift& shifts_;
+  const MovingShapes& shapes_;
+  const ShiftQuestion& asked_;
   std::span<const PointsToFree> sets_;
-  const double most_;
   Progress& progress_;
   std::vector<Unit> units_;
   std::vector<double> shift_;  ///< of each set to the left and to the right
 };
 
-std::vector<SideShifts> LeastShift::least(std::span<const PointsToFree> sets, double most,
-                                          Progress& progress) const {
+}  // namespace
+
+std::vector<SideShifts> least_shifts(const ShiftQuestion& asked, std::span<const PointsToFree> sets,
+                                     Progress& progress) {
+  const MovingShapes shapes(asked);
   std::vector<SideShifts> out;
-  for (std::size_t begin = 0; begin < sets.size();) {
+  for (std::size_t begin = 0, end = 0; begin < sets.size(); begin = end) {
     std::vector<Unit> units;
-    std::size_t end = begin;
     for (; end < sets.size() && units.size() < kMostUnits; ++end) {
-      const PointsToFree& set = sets[end];
-      if (set.points == nullptr) continue;
-      // More than roundings can move a place
-      const Box box = set.points->box(0);
-      const Vec3 reach = reach_of(box);
-      const double margin =
-          (most * longest_left_ + radius_ + std::max({reach.x, reach.y, reach.z})) * 1e-12 +
-          most * longest_left_;
-      for (std::uint32_t body = 0; body < bodies_.size(); ++body) {
-        const auto& chunks = shapes_[body]->chunks_;
-        auto chunk = std::ranges::upper_bound(chunks, set.first, {}, &Shape::Chunk::first);
-        if (chunk != chunks.begin()) --chunk;
-        for (; chunk != chunks.end() && chunk->first <= set.last; ++chunk) {
-          if (!meet(chunk->box.grown(margin), box)) continue;
-          const bool is_last = chunk + 1 == chunks.end();
-          const std::uint32_t last =
-              is_last ? set.last : std::min(set.last, (chunk + 1)->first - 1);
-          const std::uint32_t first = std::max(set.first, chunk->first);
-          if (first > last) continue;
-          units.push_back({static_cast<std::uint32_t>(end - begin), body, first, last});
-        }
-      }
+      shapes.add_units(static_cast<std::uint32_t>(end - begin), sets[end], units);
     }
-    Round round(*this, sets.subspan(begin, end - begin), most, progress);
-    std::ranges::copy(round.run(units), std::back_inserter(out));
+    Round round(shapes, sets.subspan(begin, end - begin), std::move(units), progress);
+    std::ranges::copy(round.run(), std::back_inserter(out));
     throw_if_stopped(progress);
     progress.advance(end - begin);
-    begin = end;
   }
   return out;
 }

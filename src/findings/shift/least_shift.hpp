@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -27,49 +26,29 @@ struct PointsToFree {
   std::uint32_t first = 0, last = 0;
 };
 
+/// What is shifted. All references must outlive it.
+struct ShiftQuestion {
+  std::span<const MovingBody> bodies;
+  const std::vector<Pose>& path;
+  Vec3 left;  ///< to the left in the frame of the path's poses: +Y if the front points along +X
+  double radius;
+  /// Whether model points move on straight segments from pose to pose, which are looked at in steps
+  /// of half the radius.
+  bool ways;
+  /// About how many pairs of a point and a pose are asked about; more of them are worth more
+  /// preparation.
+  std::uint64_t pairs;
+  double most;  ///< the longest shift that is looked for, metres
+  int threads;
+};
+
 /// How far a vehicle has to be shifted to one side so that given points no longer collide with it.
 /// A shift by l moves every body at pose i of the path by l times the axis of that pose that points
-/// to the left (docs/design/findings.md, "Own shifts").
-class LeastShift {
- public:
-  /// left: the direction to the left in the frame of the path's poses, +Y for a vehicle whose front
-  /// points along +X. ways: whether model points move on straight segments from pose to pose, which
-  /// are looked at in steps of half the radius. A point below a body's floor does not collide with
-  /// it. pairs: about how many pairs of a point and a pose will be asked about; more of them are
-  /// worth more preparation. All references outlive it. Runs in the caller's arena of oneTBB.
-  LeastShift(std::span<const MovingBody> bodies, const std::vector<Pose>& path, const Vec3& left,
-             double radius, bool ways, std::uint64_t pairs, int threads);
-  ~LeastShift();
-  LeastShift(const LeastShift&) = delete;
-  LeastShift& operator=(const LeastShift&) = delete;
-
-  /// For each set of points, the least shifts of at most `most` metres at which none of them
-  /// collides at any of its poses. The same for any number of threads.
-  /// Progress advances by one for each set. Runs in the caller's arena of oneTBB. Throws
-  /// Interrupted.
-  std::vector<SideShifts> least(std::span<const PointsToFree> sets, double most,
-                                Progress& progress) const;
-
- private:
-  class Shape;
-  struct Instant;
-  struct Bounds;
-  struct Unit;
-  class Round;
-  class UnitSearch;
-
-  void add_instants(std::size_t body, std::uint32_t pose, bool with_way, double direction,
-                    std::vector<Instant>& out) const;
-  void add_instant(const Pose& pose, const Pose& of_path, double direction,
-                   std::vector<Instant>& out) const;
-
-  std::span<const MovingBody> bodies_;
-  const std::vector<Pose>& path_;
-  const Vec3 left_;
-  const double radius_;
-  const bool ways_;
-  double longest_left_ = 0;                     ///< the greatest length of the left axis of a pose
-  std::vector<std::unique_ptr<Shape>> shapes_;  ///< one for each body
-};
+/// to the left (docs/design/findings.md, "Own shifts"). A point below a body's floor does not
+/// collide with it. Returns for each set of points the least shifts at which none of them collides
+/// at any of its poses, the same for any number of threads. Progress advances by one for each set.
+/// Runs in the caller's arena of oneTBB. Throws Interrupted.
+std::vector<SideShifts> least_shifts(const ShiftQuestion& asked, std::span<const PointsToFree> sets,
+                                     Progress& progress);
 
 }  // namespace clearway
