@@ -140,5 +140,14 @@ const onKeys = (element, actions) => element.addEventListener("keydown", (event)
   act();
 });
 
+/** What paints in the next frame, however often it is called before. */
+function inNextFrame(paint) {
+  let due = false;
+  return () => {
+    if (!due) requestAnimationFrame(() => { due = false; paint(); });
+    due = true;
+  };
+}
+
 /** The keys that zoom, and the one that shows all. */
 const zoomKeys = (closer, farther, all) => ({ "+": closer, "=": closer, "-": farther, "0": all });

@@ -18,15 +18,9 @@ function stampOf(shape, size) {
  * camera: {origin, right, up, toViewer (unit vectors), halfWidth, halfHeight (metres),
  * distance (of the eye from origin; 0: parallel)}.
  */
-class Painter {
+class Projection {
   constructor(width, height, camera) {
-    this.width = width;
-    this.height = height;
-    this.camera = camera;
-    this.image = new ImageData(width, height);
-    this.pixels = new Uint32Array(this.image.data.buffer);
-    this.depth = new Float32Array(width * height).fill(-Infinity);
-    this.perMetre = width / (2 * camera.halfWidth);
+    Object.assign(this, { width, height, camera, perMetre: width / (2 * camera.halfWidth) });
   }
 
   /** [x, y, depth] in pixels; depth in metres, larger is nearer. null behind the eye. */
@@ -37,6 +31,15 @@ class Painter {
     const f = c.distance ? c.distance / (c.distance - depth) : 1;
     return [this.width / 2 + dot(d, c.right) * f * this.perMetre,
             this.height / 2 - dot(d, c.up) * f * this.perMetre, depth];
+  }
+}
+
+class Painter extends Projection {
+  constructor(width, height, camera) {
+    super(width, height, camera);
+    this.image = new ImageData(width, height);
+    this.pixels = new Uint32Array(this.image.data.buffer);
+    this.depth = new Float32Array(width * height).fill(-Infinity);
   }
 
   sees(chunk, lo, hi) {

@@ -1,6 +1,6 @@
 // The scene from above, cut open where it is enclosed, with the path and the numbered conflicts.
 
-const plan = { centre: [0, 0], halfWidth: 10, turned: false, due: false };
+const plan = { centre: [0, 0], halfWidth: 10, turned: false, places: [] };
 
 /** Around all that the plan shows, and a metre beside the path. */
 const planBox = () => boxAround([
@@ -58,8 +58,11 @@ const crowdedWords = (dots) => dots === 0 ? ""
     : `${plural(dots, "number has", "numbers have")} no room beside others here, so that a dot stands for ` +
       `${dots === 1 ? "it" : "each"}; the table has all of them.`;
 
-/** The numbers of conflicts and unseen groups, the worst ones first; those without room become dots. Returns how many. */
-function drawNumbers(context, painter, unitSize, places) {
+/**
+ * The numbers of conflicts and unseen groups, the worst ones first; those without room become dots, of which the element with the
+ * name `note` tells. Returns what pickNumber() finds.
+ */
+function drawNumbers(context, painter, unitSize, note) {
   const order = [...conflictMarks(), ...groupMarks()].sort((a, b) => b.chosen - a.chosen ||
       b.first - a.first || (a.quiet ?? false) - (b.quiet ?? false) || a.rank - b.rank);
   const taken = [], dots = [];
@@ -72,11 +75,9 @@ function drawNumbers(context, painter, unitSize, places) {
     at.mark = mark;
   }
   for (const at of dots) drawNumber(context, at, at.mark, false, unitSize);
-  for (const at of taken.reverse()) {
-    drawNumber(context, at, at.mark, true, unitSize);
-    places.push({ x: at[0], y: at[1], mark: at.mark });
-  }
-  return dots.length;
+  for (const at of taken.reverse()) drawNumber(context, at, at.mark, true, unitSize);
+  byId(note).textContent = crowdedWords(dots.length);
+  return taken.map(({ 0: x, 1: y, mark }) => ({ x, y, mark }));
 }
 
 /** The outline of a mark: a diamond and a triangle are as large as the disc in them. */
@@ -109,13 +110,6 @@ function drawNumber(context, [x, y], mark, full, unitSize) {
   if (!mark.quiet) return;
   context.fillStyle = kQuietColour;
   haloText(context, "✓", x + radius + 5 * unitSize, y - 0.5 * radius, "center");
-}
-
-function drawVehicleMark(context, painter, unitSize) {
-  if (page.poses.count === 0) return;
-  for (const { body } of bodiesAt(page.pose)) {
-    drawBodyMark(context, painter, unitSize, vehicleAt(page.pose, body));
-  }
 }
 
 function drawBodyMark(context, painter, unitSize, v) {
@@ -161,34 +155,23 @@ function paintPlan(canvas, unitSize) {
   const marks = new Painter(canvas.width, canvas.height, planCamera(canvas));
   paintClasses(marks, { over: true, size: size + 2 });
   marks.show(context);
-  drawVehicleMark(context, painter, unitSize);
-  plan.places = [];
-  byId("plan-crowded").textContent = crowdedWords(drawNumbers(context, painter, unitSize, plan.places));
+  for (const { body } of page.poses.count > 0 ? bodiesAt(page.pose) : []) {
+    drawBodyMark(context, painter, unitSize, vehicleAt(page.pose, body));
+  }
+  plan.places = drawNumbers(context, painter, unitSize, "plan-crowded");
   drawScaleBar(context, painter.perMetre, unitSize);
   drawAxes(context, unitSize);
 }
 
-function schedulePlan() {
-  if (plan.due) return;
-  plan.due = true;
-  requestAnimationFrame(() => {
-    plan.due = false;
-    const canvas = byId("plan-canvas");
-    if (canvas.width > 0 && canvas.height > 0) {
-      paintPlan(canvas, canvas.width / canvas.clientWidth || 1);
-    }
-  });
-}
+const schedulePlan = inNextFrame(() => {
+  const canvas = byId("plan-canvas");
+  if (canvas.width > 0 && canvas.height > 0) paintPlan(canvas, canvas.width / canvas.clientWidth || 1);
+});
 
 function sizePlan() {
-  const canvas = byId("plan-canvas"), stage = byId("plan-stage"), box = planBox();
-  const size = [box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]];
+  const stage = byId("plan-stage"), box = planBox(), size = [box.hi[0] - box.lo[0], box.hi[1] - box.lo[1]];
   const ratio = Math.min(...size) / Math.max(...size);
-  const height = clamp(stage.clientWidth * ratio * 1.05, 260, Math.min(720, 0.72 * innerHeight));
-  const scale = Math.min(2, devicePixelRatio || 1);
-  canvas.style.height = `${height}px`;
-  canvas.width = Math.round(stage.clientWidth * scale);
-  canvas.height = Math.round(height * scale);
+  sizeCanvases(stage, clamp(stage.clientWidth * ratio * 1.05, 260, Math.min(720, 0.72 * innerHeight)));
 }
 
 function zoomPlan(factor, at) {

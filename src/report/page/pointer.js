@@ -43,6 +43,16 @@ function watchPointer(canvas, pan, zoom, pick) {
   }, { passive: false });
 }
 
+/** Gives the canvases of a stage its width and this height. */
+function sizeCanvases(stage, height) {
+  const scale = Math.min(2, devicePixelRatio || 1);
+  for (const canvas of stage.querySelectorAll("canvas")) {
+    canvas.style.height = `${height}px`;
+    canvas.width = Math.round(stage.clientWidth * scale);
+    canvas.height = Math.round(height * scale);
+  }
+}
+
 function spread(touches) {
   if (touches.size < 2) return 1;
   const [a, b] = [...touches.values()];
@@ -53,7 +63,7 @@ function spread(touches) {
 function pickNumber(places, canvas, x, y) {
   const scale = canvas.width / canvas.clientWidth;
   const near = (p) => Math.hypot(p.x - x * scale, p.y - y * scale);
-  const hit = (places ?? []).filter((p) => near(p) < 14 * scale).sort((a, b) => near(a) - near(b));
+  const hit = places.filter((p) => near(p) < 14 * scale).sort((a, b) => near(a) - near(b));
   if (hit.length > 0) hit[0].mark.select();
   return hit.length > 0;
 }

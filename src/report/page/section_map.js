@@ -138,14 +138,10 @@ function showOnMap(index, band) {
 
 function watchMap(svg) {
   let waiting = null;
+  const show = inNextFrame(() => waiting && showOnMap(waiting.index, waiting.band));
   svg.addEventListener("pointermove", (event) => {
-    const before = waiting;
     waiting = placeOnMap(svg, event);
-    if (before || !waiting) return;
-    requestAnimationFrame(() => {
-      if (waiting) showOnMap(waiting.index, waiting.band);
-      waiting = null;
-    });
+    show();
   });
   svg.addEventListener("pointerleave", () => {
     waiting = null;

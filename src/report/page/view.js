@@ -1,7 +1,7 @@
 // The 3-D view: a camera around a target, what is drawn, and the vehicle's slider.
 
 const view = { target: [0, 0, 0], distance: 20, yaw: -2.2, pitch: 0.7, follow: false, hidden: 0,
-               cutAbove: false, cutFront: false, scene: null, due: false, places: [] };
+               cutAbove: false, cutFront: false, scene: null, places: [] };
 const kHalfAngle = Math.PI / 8;
 
 function cameraAxes(yaw, pitch) {
@@ -36,24 +36,21 @@ function drawWebgl(canvas) {
   const camera = viewCamera(), { height } = canvas, gl = view.scene.gl;
   const perMetre = height / (2 * Math.tan(kHalfAngle)), scale = devicePixelRatio || 1;
   const spacing = page.facts.page.environment_spacing || 0.02;
-  const classes = page.facts.classes.map((c) => kClassWords[c.name].rgb);
-  while (classes.length < 5) classes.push([0, 0, 0]);
-  const black = Array(5).fill([17, 24, 39]);
+  const black = [[17, 24, 39]];
   view.scene.draw(canvas.width, height, camera, [
-    ["environment", { environment: 1, palette: [[92, 105, 122], [148, 158, 168], [196, 190, 176],
-                                                [0, 0, 0], [0, 0, 0]],
+    ["environment", { environment: 1, palette: [[92, 105, 122], [148, 158, 168], [196, 190, 176]],
                       size: 1.3 * spacing * perMetre, least: 1.2 * scale, most: 5 * scale,
                       cutAbove: view.cutAbove ? 128 + 2 : 1000, cutPlane: cutPlane(camera) }],
     ...bodiesAt(page.pose).map(({ body, pose }) =>
-        ["model", { palette: Array(5).fill(bodyRgb(body)), matrix: matrixOf(pose),
+        ["model", { palette: [bodyRgb(body)], matrix: matrixOf(pose),
                     ...page.model.ranges[body],
                     size: 0.03 * perMetre, least: 1.5 * scale, most: 6 * scale }]),
     ["path", { palette: black, mode: gl.LINE_STRIP, size: 1, least: 2, most: 2 }],
     ["path", { palette: black, size: 0.01 * perMetre, least: 2 * scale, most: 3 * scale }],
     ...(page.unseen && !view.unseenHidden ? [["unseen", { environment: 3,
-        palette: Array(5).fill(kUnseenRgb), size: seenFacts().cube * perMetre, least: 3 * scale,
+        palette: [kUnseenRgb], size: seenFacts().cube * perMetre, least: 3 * scale,
         most: 64 * scale }]] : []),
-    ["points", { environment: 0, palette: classes, hidden: view.hidden, size: 0.03 * perMetre,
+    ["points", { environment: 0, palette: page.facts.classes.map((c) => kClassWords[c.name].rgb), hidden: view.hidden, size: 0.03 * perMetre,
                  least: 2.5 * scale, most: 9 * scale }],
   ]);
 }
@@ -90,28 +87,15 @@ function paintView() {
   }
   const context = over.getContext("2d");
   context.clearRect(0, 0, over.width, over.height);
-  view.places = [];
-  const painter = new Painter(1, 1, { ...painterCamera(over) });
-  Object.assign(painter, { width: over.width, height: over.height,
-                           perMetre: over.width / (2 * painter.camera.halfWidth) });
-  byId("view-crowded").textContent =
-      crowdedWords(drawNumbers(context, painter, over.width / over.clientWidth || 1, view.places));
+  view.places = drawNumbers(context, new Projection(over.width, over.height, painterCamera(over)),
+                            over.width / over.clientWidth || 1, "view-crowded");
 }
 
-function scheduleView() {
-  if (view.due) return;
-  view.due = true;
-  requestAnimationFrame(() => { view.due = false; paintView(); });
-}
+const scheduleView = inNextFrame(paintView);
 
 function sizeView() {
-  const scale = Math.min(2, devicePixelRatio || 1), stage = byId("view-stage");
-  const height = clamp(0.5 * stage.clientWidth, 320, 0.78 * innerHeight);
-  for (const canvas of stage.querySelectorAll("canvas")) {
-    canvas.style.height = `${height}px`;
-    canvas.width = Math.round(stage.clientWidth * scale);
-    canvas.height = Math.round(height * scale);
-  }
+  const stage = byId("view-stage"), height = clamp(0.5 * stage.clientWidth, 320, 0.78 * innerHeight);
+  sizeCanvases(stage, height);
   stage.style.height = `${height}px`;
   scheduleView();
 }

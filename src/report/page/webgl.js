@@ -163,7 +163,7 @@ class WebglScene {
   drawSet(name, how) {
     const gl = this.gl, { uniforms } = this.points, set = this.sets[name];
     gl.uniformMatrix4fv(uniforms.pageFromSet, false, how.matrix ?? kIdentity);
-    gl.uniform3fv(uniforms.palette, how.palette.flat().map((v) => v / 255));
+    gl.uniform3fv(uniforms.palette, [...Array(5).keys()].flatMap((k) => how.palette[k] ?? how.palette[0]).map((v) => v / 255));
     gl.uniform1f(uniforms.size, how.size);
     gl.uniform1f(uniforms.least, how.least);
     gl.uniform1f(uniforms.most, how.most);
