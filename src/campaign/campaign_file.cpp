@@ -103,20 +103,16 @@ const Keys kLimitKeys = keys_of(std::tuple_cat(std::tuple{kEngine<SearchOptions>
 /// A value as on a command line.
 std::string value_text(const KeyReader& value, ValueKind kind) {
   const Json& json = value.value();
-  const auto expect = [&value](bool holds, const std::string& what) {
-    if (!holds) value.refuse("expected " + what);
+  const bool is_number = json.is_number(), is_text = json.is_string();
+  const auto expect = [&](ValueKind of, bool holds, const char* what) {
+    if (kind == of && !holds) value.refuse(std::string("expected ") + what);
   };
-  if (kind == ValueKind::kLength) {
-    expect(json.is_number() || json.is_string(), "a length, as 0.1 or \"10cm\"");
-  } else if (kind == ValueKind::kCount) {
-    expect(json.is_number_unsigned(), "a whole number, 0 or more");
-  } else if (kind == ValueKind::kNumber) {
-    expect(json.is_number(), "a number");
-  } else if (kind == ValueKind::kSize) {
-    expect(json.is_number_integer() || json.is_string(),
-           "bytes as a whole number, or a size in quotes, as \"4G\"");
-  }
-  if (kind == ValueKind::kText || json.is_string()) return value.text();
+  expect(ValueKind::kLength, is_number || is_text, "a length, as 0.1 or \"10cm\"");
+  expect(ValueKind::kCount, json.is_number_unsigned(), "a whole number, 0 or more");
+  expect(ValueKind::kNumber, is_number, "a number");
+  expect(ValueKind::kSize, json.is_number_integer() || is_text,
+         "bytes as a whole number, or a size in quotes, as \"4G\"");
+  if (kind == ValueKind::kText || is_text) return value.text();
   return json.is_number_float() ? format_number(json.get<double>()) : json.dump();
 }
 
@@ -273,9 +269,8 @@ std::string kind_of(const fs::path& file) {
   return kTables.contains(ending) ? "table" : kMeshes.contains(ending) ? "mesh" : ending;
 }
 
-/// Names of the files in the folders of `matches` that are of their kind by their endings, sorted.
-std::vector<std::string> names_beside(const std::vector<fs::path>& matches,
-                                      const std::set<fs::path>& named) {
+/// The files in the folders of `matches` that are of their kind by their endings.
+std::set<fs::path> files_beside(const std::vector<fs::path>& matches) {
   std::error_code unreadable;
   std::set<fs::path> found;
   std::set<std::pair<fs::path, std::string>> kinds;
@@ -284,15 +279,12 @@ std::vector<std::string> names_beside(const std::vector<fs::path>& matches,
     if (!kinds.insert({match.parent_path(), kind_of(match)}).second) continue;
     fs::directory_iterator at(match.parent_path(), unreadable);
     for (; !unreadable && at != fs::directory_iterator(); at.increment(unreadable)) {
-      const fs::path& file = at->path();
-      const bool is_hidden = file.filename().string().starts_with('.');
-      if (is_hidden || kind_of(file) != kind_of(match) || named.contains(file)) continue;
-      if (fs::is_regular_file(file, unreadable)) found.insert(file);
+      const bool is_hidden = at->path().filename().string().starts_with('.');
+      if (is_hidden || kind_of(at->path()) != kind_of(match)) continue;
+      if (at->is_regular_file(unreadable)) found.insert(at->path());
     }
   }
-  std::vector<std::string> names;
-  for (const fs::path& file : found) names.push_back(valid_utf8(file.filename().string()));
-  return names;
+  return found;
 }
 
 /// Notes which files the patterns leave out that are of the kind of their matches and that nothing
@@ -309,7 +301,10 @@ std::vector<Message> notes_on_patterns(const Campaign& campaign, const fs::path&
   constexpr std::size_t kMostNames = 5;
   std::vector<Message> notes;
   for (const auto& [key, matches] : matches_of) {
-    const std::vector<std::string> names = names_beside(matches, named);
+    std::vector<std::string> names;
+    for (const fs::path& beside : files_beside(matches)) {
+      if (!named.contains(beside)) names.push_back(valid_utf8(beside.filename().string()));
+    }
     if (names.empty()) continue;
     notes.push_back(
         note("unmatched-files",

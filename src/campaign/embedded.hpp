@@ -5,7 +5,6 @@
 /// The files of this folder that go into the program as they are.
 namespace clearway::campaign {
 
-extern const std::string_view kPageStyle;     ///< page/campaign.css
 extern const std::string_view kTaskScript;    ///< slurm/task.sh: what campaign.sbatch does
 extern const std::string_view kSubmitScript;  ///< slurm/submit.sh: what submit.sh does
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -61,8 +60,6 @@ Outcome outcome_of(const TaskStatus& run);
 /// The outcome without the conflicts that the ledger of the run accepts.
 Outcome outcome_outside(const TaskStatus& run);
 
-/// How many runs have an outcome.
-std::size_t count_of(const std::vector<TaskStatus>& runs, Outcome outcome);
 /// For example "5 runs: 1 conflict, 1 undecided, 1 clear with warnings, 1 clear, 1 failed, 0 not
 /// done".
 std::string counts_text(const std::vector<TaskStatus>& runs);
@@ -76,26 +73,14 @@ Json ledgers_of(const std::vector<TaskStatus>& runs);
 /// in them, and without a ledger. ledger: the member of the facts, or a sum of several.
 std::string ledger_words(const Json& ledger);
 
-/// The parts that are not empty, with the separator between them.
-std::string joined(std::initializer_list<std::string> parts, const char* separator);
-
-// In what follows, facts are those of a run that is done, and unit is that of its lengths, for
-// example "m".
-
-/// What has to be said besides the verdict, for example "2 warnings (out-of-reach, scan-ends);
-/// 1,234 points ignored, of which 56 would collide; not exact". Empty where there is nothing to
-/// say.
+/// What has to be said of a run that is done besides the verdict, for example "2 warnings
+/// (out-of-reach, scan-ends); 1,234 points ignored, of which 56 would collide". Empty where there
+/// is nothing to say. unit: of its lengths, for example "m".
 std::string caveats_of(const Json& facts, const std::string& unit);
-/// Whether a run is undecided because its question is in doubt, so that its distances say nothing.
-bool is_in_doubt(const Json& facts);
-/// Why a run is undecided, and on how much of the path nobody knows what is there: "points are
-/// near, the question is in doubt (model-unit), not scanned on 3.2 m". Empty where nothing of this
-/// holds.
-std::string open_words(const Json& facts, const std::string& unit);
-/// For example "1,234 points ignored, of which 56 would collide"; empty where none is ignored.
-/// noun: whether to say that they are points.
-std::string ignored_words(const Json& facts, bool noun = true);
-/// For example "1,234 below 0.3 m not judged"; empty without a floor.
-std::string floor_clause(const Json& facts, const std::string& unit);
+
+/// What `campaign report` says of a campaign, as one JSON object. runs: those of runs_of().
+Json report_facts(const Plan& plan, const std::vector<TaskStatus>& runs, const std::string& date);
+/// The sentences and words in which the page says it, beside these facts.
+Json report_words(const std::vector<TaskStatus>& runs);
 
 }  // namespace clearway::campaign

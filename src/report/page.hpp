@@ -55,7 +55,7 @@ void append_columns(const std::string& name, const std::vector<PagePoint>& point
 
 /// What the browser runs, of the files of src/report/page, which the build puts into the program.
 /// A name in double braces stands for a part of the content.
-extern const std::string_view kReportPage, kSectionPage;
+extern const std::string_view kReportPage, kSectionPage, kComparisonPage, kCampaignPage;
 
 /// What the facts of every page begin with: the version, and the texts of its head.
 Json page_head(const PageTexts& texts, const std::string& title);
@@ -63,12 +63,12 @@ Json page_head(const PageTexts& texts, const std::string& title);
 /// What is put into the parts of a page.
 struct PageContent {
   std::string title;
-  std::string facts;    ///< JSON
-  std::string section;  ///< the picture of a section, an SVG element; or empty
-  std::vector<PageColumn> columns;
+  std::string facts;         ///< JSON
+  std::string section = {};  ///< the picture of a section, an SVG element; or empty
+  std::vector<PageColumn> columns = {};
 };
 
-/// Writes a page, kReportPage or kSectionPage, with its content. Returns its size in bytes. Throws
+/// Writes one of the pages above with its content. Returns its size in bytes. Throws
 /// ResourceError.
 std::uint64_t write_page(const std::filesystem::path& path, std::string_view page,
                          PageContent content);

@@ -1,14 +1,18 @@
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_comparison.hpp"
 #include "cli/run_again.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
+#include "cli/support/program.hpp"
 #include "cli/verdict.hpp"
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
@@ -18,21 +22,9 @@ namespace clearway::tool {
 namespace {
 
 const char* kind_text(PointDifference::Kind kind) {
-  switch (kind) {
-    case PointDifference::Kind::kOnlyInA:
-      return "only in a";
-    case PointDifference::Kind::kOnlyInB:
-      return "only in b";
-    case PointDifference::Kind::kFirstPose:
-      return "first pose";
-    case PointDifference::Kind::kLastPose:
-      return "last pose";
-    case PointDifference::Kind::kDepth:
-      return "depth";
-    case PointDifference::Kind::kCoordinates:
-      return "coordinates";
-  }
-  return "";
+  constexpr const char* kNames[]{"only in a", "only in b", "first pose",
+                                 "last pose", "depth",     "coordinates"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 /// "0.25 to 17", with the index of the free point.
@@ -42,18 +34,14 @@ std::string depth_text(double depth, std::uint64_t source) {
 }
 
 std::string point_text(const PointDifference& point) {
-  std::string text = "  ";
-  text.append(kind_text(point.kind)).append("  ").append(std::to_string(point.source)).append(" ");
-  for (int k = 0; k < 3; ++k) text.append(" ").append(format_number(point.xyz[k]));
-  if (point.kind == PointDifference::Kind::kFirstPose) {
-    text += "  pose " + std::to_string(*point.first_pose_a) + " / " +
-            std::to_string(*point.first_pose_b);
-  }
-  if (point.kind == PointDifference::Kind::kLastPose) {
-    text +=
-        "  pose " + std::to_string(*point.last_pose_a) + " / " + std::to_string(*point.last_pose_b);
-  }
-  if (point.kind == PointDifference::Kind::kDepth) {
+  using Kind = PointDifference::Kind;
+  std::string text = fmt::format("  {}  {} ", kind_text(point.kind), point.source);
+  for (int k = 0; k < 3; ++k) text += " " + format_number(point.xyz[k]);
+  if (point.kind == Kind::kFirstPose) {
+    text += fmt::format("  pose {} / {}", *point.first_pose_a, *point.first_pose_b);
+  } else if (point.kind == Kind::kLastPose) {
+    text += fmt::format("  pose {} / {}", *point.last_pose_a, *point.last_pose_b);
+  } else if (point.kind == Kind::kDepth) {
     text += "  " + depth_text(*point.depth_a, *point.depth_source_a) + " / " +
             depth_text(*point.depth_b, *point.depth_source_b);
   }
@@ -65,35 +53,31 @@ std::uint64_t all_differences(const Comparison& c) {
          c.differing_last_poses.value_or(0) + c.differing_depths.value_or(0);
 }
 
-nlohmann::ordered_json point_json(const PointDifference& point) {
-  nlohmann::ordered_json out{
-      {"kind", kind_text(point.kind)}, {"source", point.source}, {"xyz", point.xyz}};
-  if (point.first_pose_a) out["first_pose_a"] = *point.first_pose_a;
-  if (point.first_pose_b) out["first_pose_b"] = *point.first_pose_b;
-  if (point.last_pose_a) out["last_pose_a"] = *point.last_pose_a;
-  if (point.last_pose_b) out["last_pose_b"] = *point.last_pose_b;
+/// Adds a member where there is a value.
+template <typename Value>
+void add(const char* key, const std::optional<Value>& value, Json& out) {
+  if (value) out[key] = *value;
+}
+
+Json point_json(const PointDifference& point) {
+  Json out{{"kind", kind_text(point.kind)}, {"source", point.source}, {"xyz", point.xyz}};
+  add("first_pose_a", point.first_pose_a, out);
+  add("first_pose_b", point.first_pose_b, out);
+  add("last_pose_a", point.last_pose_a, out);
+  add("last_pose_b", point.last_pose_b, out);
   const auto add_depth = [&](const char* depth_key, const auto& depth, const char* source_key,
                              const auto& source) {
     if (!source) return;
     const bool is_free = *source != Collisions::kNoPoint;
-    out[depth_key] = out[source_key] = nullptr;
-    if (is_free) out[depth_key] = *depth;
-    if (is_free) out[source_key] = *source;
+    out[depth_key] = is_free ? Json(*depth) : Json();
+    out[source_key] = is_free ? Json(*source) : Json();
   };
   add_depth("depth_a", point.depth_a, "depth_source_a", point.depth_source_a);
   add_depth("depth_b", point.depth_b, "depth_source_b", point.depth_source_b);
   return out;
 }
 
-/// How the points of a table differ, on one line.
-std::string table_text(const char* what, const TableComparison& table) {
-  return std::string(what) + " in both: " + format_count(table.common) +
-         ", only in a: " + format_count(table.only_in_a) +
-         ", only in b: " + format_count(table.only_in_b) +
-         ", differing: " + format_count(table.differing) + "\n";
-}
-
-nlohmann::ordered_json table_json(const TableComparison& table) {
+Json table_json(const TableComparison& table) {
   return {{"in_a", table.in_a},           {"in_b", table.in_b},
           {"common", table.common},       {"only_in_a", table.only_in_a},
           {"only_in_b", table.only_in_b}, {"differing", table.differing}};
@@ -101,25 +85,26 @@ nlohmann::ordered_json table_json(const TableComparison& table) {
 
 /// A comparison in words, in many lines. a, b: the names of the compared files.
 std::string comparison_text(const Comparison& c, const std::string& a, const std::string& b) {
-  std::string text = "a: " + counted(c.in_a, "colliding point") + " in " + a + "\n" +
-                     "b: " + counted(c.in_b, "colliding point") + " in " + b + "\n" +
-                     "in both: " + format_count(c.common) + "\n" +
-                     "only in a: " + format_count(c.only_in_a) + "\n" +
-                     "only in b: " + format_count(c.only_in_b) + "\n";
-  if (c.differing_first_poses) {
-    text += "differing first poses: " + format_count(*c.differing_first_poses) + "\n";
+  std::string text = fmt::format("a: {} in {}\nb: {} in {}\n", counted(c.in_a, "colliding point"),
+                                 a, counted(c.in_b, "colliding point"), b);
+  const std::optional<std::uint64_t> coordinates(c.differing_coordinates);
+  using Count = std::pair<const char*, std::optional<std::uint64_t>>;
+  for (const auto& [words, count] :
+       {Count{"in both", c.common}, Count{"only in a", c.only_in_a},
+        Count{"only in b", c.only_in_b}, Count{"differing first poses", c.differing_first_poses},
+        Count{"differing last poses", c.differing_last_poses},
+        Count{"differing depths", c.differing_depths},
+        Count{"differing coordinates", *coordinates > 0 ? coordinates : std::nullopt}}) {
+    if (count) text += std::string(words) + ": " + format_count(*count) + "\n";
   }
-  if (c.differing_last_poses) {
-    text += "differing last poses: " + format_count(*c.differing_last_poses) + "\n";
+  using Table = std::pair<const char*, std::optional<TableComparison>>;
+  for (const auto& [words, table] :
+       {Table{"near points", c.near}, Table{"clearances", c.clearances}}) {
+    if (!table) continue;
+    text += fmt::format("{} in both: {}, only in a: {}, only in b: {}, differing: {}\n", words,
+                        format_count(table->common), format_count(table->only_in_a),
+                        format_count(table->only_in_b), format_count(table->differing));
   }
-  if (c.differing_depths) {
-    text += "differing depths: " + format_count(*c.differing_depths) + "\n";
-  }
-  if (c.differing_coordinates > 0) {
-    text += "differing coordinates: " + format_count(c.differing_coordinates) + "\n";
-  }
-  if (c.near) text += table_text("near points", *c.near);
-  if (c.clearances) text += table_text("clearances", *c.clearances);
   if (c.profiles) {
     text += "differing poses of the profile: " + format_count(c.profiles->differing);
     if (c.profiles->first) text += ", the first is pose " + std::to_string(*c.profiles->first);
@@ -138,33 +123,27 @@ std::string comparison_text(const Comparison& c, const std::string& a, const std
 
 /// A comparison as one JSON object, on one line. a, b: the names of the compared files.
 std::string comparison_json(const Comparison& c, const std::string& a, const std::string& b) {
-  nlohmann::ordered_json out{{"equal", c.equal()},
-                             {"a", {{"file", a}, {"colliding_points", c.in_a}}},
-                             {"b", {{"file", b}, {"colliding_points", c.in_b}}},
-                             {"common", c.common},
-                             {"only_in_a", c.only_in_a},
-                             {"only_in_b", c.only_in_b},
-                             {"differing_coordinates", c.differing_coordinates},
-                             {"differing_first_poses", nullptr}};
-  if (c.differing_first_poses) out["differing_first_poses"] = *c.differing_first_poses;
-  if (c.differing_last_poses) out["differing_last_poses"] = *c.differing_last_poses;
-  if (c.differing_depths) out["differing_depths"] = *c.differing_depths;
-  out["clearances"] = nullptr;
-  if (c.clearances) out["clearances"] = table_json(*c.clearances);
+  Json out{{"equal", c.equal()},
+           {"a", {{"file", a}, {"colliding_points", c.in_a}}},
+           {"b", {{"file", b}, {"colliding_points", c.in_b}}},
+           {"common", c.common},
+           {"only_in_a", c.only_in_a},
+           {"only_in_b", c.only_in_b},
+           {"differing_coordinates", c.differing_coordinates},
+           {"differing_first_poses", or_null(c.differing_first_poses)}};
+  add("differing_last_poses", c.differing_last_poses, out);
+  add("differing_depths", c.differing_depths, out);
+  out["clearances"] = c.clearances ? table_json(*c.clearances) : Json();
   if (c.near) out["near"] = table_json(*c.near);
   out["profiles"] = nullptr;
   if (c.profiles) {
     out["profiles"] = {{"poses", c.profiles->poses},
                        {"differing", c.profiles->differing},
-                       {"first_differing_pose", nullptr}};
-    if (c.profiles->first) out["profiles"]["first_differing_pose"] = *c.profiles->first;
+                       {"first_differing_pose", or_null(c.profiles->first)}};
   }
-  auto& queries = out["question_differences"] = nlohmann::ordered_json::array();
-  for (const QueryDifference& query : c.queries) {
-    queries.push_back({{"what", query.what}, {"a", query.a}, {"b", query.b}});
-  }
-  auto& points = out["differences"] = nlohmann::ordered_json::array();
-  for (const PointDifference& point : c.points) points.push_back(point_json(point));
+  out["question_differences"] = questions_json(c.queries);
+  out["differences"] = Json::array();
+  for (const PointDifference& point : c.points) out["differences"].push_back(point_json(point));
   // File names need not be UTF-8.
   return indented_text(out, -1);
 }

@@ -7,12 +7,10 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
 #include "campaign/outcome.hpp"
-#include "campaign/page/campaign_page.hpp"
 #include "campaign/plan.hpp"
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
@@ -25,6 +23,7 @@
 #include "core/util/format.hpp"
 #include "io/files/json.hpp"
 #include "io/files/pending_file.hpp"
+#include "report/page.hpp"
 
 namespace clearway::tool {
 namespace {
@@ -207,9 +206,13 @@ void write_campaign_page(CampaignOptions& options) {
   PendingFile pending(file, options.force);
   if (options.date.empty()) options.date = now_in_utc();
   const std::vector<TaskStatus> runs = campaign::runs_of(statuses_of(plan, options.folder));
-  const Json facts = campaign::page_facts(plan, runs, options.date);
-  const std::string page = campaign::page_text(facts, runs);
-  File::create(pending.partial()).write(std::as_bytes(std::span(page)));
+  const Json facts = campaign::report_facts(plan, runs, options.date);
+  PageTexts texts;
+  texts.date = options.date;
+  Json page = page_head(texts, plan.name);
+  page.update(facts);
+  page["words"] = campaign::report_words(runs);
+  write_page(pending.partial(), kCampaignPage, {.title = plan.name, .facts = page_text(page)});
   pending.publish();
   spdlog::info("{}: {}", file.string(), campaign::counts_text(runs));
   if (options.json) print(indented_text(facts));

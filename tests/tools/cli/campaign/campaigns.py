@@ -8,6 +8,7 @@ import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2]))
 from place import PROGRAM, Place, Scratch  # noqa: E402, F401
+from report.browser import Browser, Page, find_chromium  # noqa: E402
 
 LIMITS = {"memory": "300M", "threads": 1}
 CAMPAIGN = {"name": "Test", "environments": {"hall": "site.h5"},
@@ -69,7 +70,7 @@ class OpenElements(html.parser.HTMLParser):
 
 
 class Campaigns(Scratch):
-    base = CAMPAIGN
+    base, browser = CAMPAIGN, None
 
     def plan(self, name, changes=None, code=0, *said, more="", lacks=()):
         put_campaign(self.place, changes or {}, base=self.base)
@@ -99,6 +100,18 @@ class Campaigns(Scratch):
         text = (self.place / name / "index.html").read_text()
         self.assertEqual([OpenElements(text).wrong, text.count("<title>")], [[], 1])
         return facts
+
+    def shown(self, name):
+        """The elements that a browser shows of the page; nothing where chromium is not installed."""
+        if self.browser is None and find_chromium():
+            type(self).browser = Browser(find_chromium())
+            self.addClassCleanup(self.browser.close)
+        if self.browser is None:
+            return None
+        page = Page(self.browser, self.place / name / "index.html")
+        self.addCleanup(page.close)
+        self.assertEqual(page.complaints(), [])
+        return page.run("document.querySelector('main').innerHTML")
 
     def files(self, name, pattern):
         """When and as which file each was made."""

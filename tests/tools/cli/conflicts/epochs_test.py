@@ -9,8 +9,9 @@ import unittest
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-from place import Scratch, write_las  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "report"))
+from pages import Pages  # noqa: E402
+from place import write_las  # noqa: E402
 
 SURFACE, WALL, THING = 2, 6, 5  # classes
 LISTS = ["new", "new_parts", "new_small", "worse", "not_searched", "too_small", "gone", "same"]
@@ -70,7 +71,7 @@ LONG = Kerb(20, 24, 0.35, 0.4)
 CABLE = Kerb(30, 30.1, 0.5, 0.5)
 
 
-class Epochs(Scratch):
+class Epochs(Pages):
     @classmethod
     def make(cls):
         for name, end, y in (("path", 57, 0), ("half", 30, 0), ("beside", 57, -0.5)):
@@ -208,6 +209,19 @@ class Epochs(Scratch):
         # Where nothing collides, the verdict of the whole is undecided too.
         self.search("b", Epoch([], scanned_to=33, noise=0))
         self.assertEqual(self.place.json("info b.h5")["verdict"], "undecided")
+
+    def test_the_page_shows_each_obstacle_in_a_row(self):
+        """A conflict of a that fell into two is one of them."""
+        compare = self.comparison(Epoch([LONG, pole(45)]),
+                                  Epoch([replace(LONG, x_to=21.5), replace(LONG, x_from=22.5), pole(47)]))
+        self.place.ask(f"{compare} -o p.html", 1)
+        page = self.open(self.place / "p.html")
+        cells = "[...document.querySelectorAll('#obstacles tbody tr')].map((row) => row.cells[{}].textContent)"
+        self.gives(page, {"byId('verdict-word').textContent": "Worse", cells.format(1): ["new", "gone", "same"],
+                          cells.format(2): ["–", "2", "1"], cells.format(3): ["3", "–", "1, 2"],
+                          "[...document.querySelectorAll('.tile strong')].map((one) => one.textContent)":
+                          ["1", "0", "0", "1", "1"], "document.querySelectorAll('#plan circle').length": 3})
+        self.says(page, {"question": ["a, before", "2 conflicts", "closer than 0.1 m"], "answer": "1 new conflict"})
 
     def test_commands_that_read_a_result_repeat_what_its_run_warned_of(self):
         self.search("a", Epoch(POLES, no_left=(0, 61)))
