@@ -11,6 +11,7 @@
 #include "clearway/error.hpp"
 #include "clearway/vehicle.hpp"
 #include "cli/input_roles.hpp"
+#include "cli/run_again.hpp"
 #include "cli/support/field_options.hpp"
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
@@ -99,6 +100,13 @@ Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
   options.progress = find.progress;
   options.stop = find.stop;
   return apply_ledger(found, find, options);
+}
+
+void work_on_result(const CLI::App& command, const ConflictCommand& options,
+                    const std::function<void()>& work) {
+  run_stoppable(options.result, kStartsAgain, [&] {
+    advising_to_run_again(command, {{options.result, options.trajectory}}, work);
+  });
 }
 
 void add_axis_options(CLI::App& command, ConflictCommand& options) {
@@ -216,24 +224,6 @@ void OpenedResult::read_bodies_again(const ModelOptions& again) {
   }
   bodies = std::move(found.first);
   std::ranges::move(found.second, std::back_inserter(messages));
-}
-
-std::size_t TextColumn::width() const {
-  std::size_t width = std::max(least_width, title.size());
-  for (const std::string& cell : cells) width = std::max(width, cell.size());
-  return width;
-}
-
-std::string table_text(const std::vector<TextColumn>& columns) {
-  std::vector<std::string> lines(1 + columns.front().cells.size());
-  for (const TextColumn& column : columns) {
-    const std::size_t width = column.to_left ? 0 : column.width();
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      lines[i] += fmt::format("{}{:>{}}", lines[i].empty() ? "" : "  ",
-                              i == 0 ? column.title : column.cells[i - 1], width);
-    }
-  }
-  return fmt::format("{}\n", fmt::join(lines, "\n"));
 }
 
 std::string range_text(double from, double to) { return fmt::format("{:.2f} - {:.2f}", from, to); }

@@ -1,10 +1,13 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,6 +19,7 @@
 #include "clearway/trajectory.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/lengths.hpp"
+#include "core/util/format.hpp"
 #include "io/files/pending_file.hpp"
 
 namespace CLI {
@@ -69,6 +73,11 @@ void add_update_option(CLI::App& command, LedgerCommand& ledger, LengthOptions& 
 /// open; null: it is opened where the command names it.
 Ledger apply_ledger_of(const LedgerCommand& ledger, const GroupedResult& found,
                        const ConflictOptions& find, const Store* store = nullptr);
+
+/// Does `work`, the work of a command about one result, which a signal may stop. Where the result
+/// lacks what another run would give, the message has its command line.
+void work_on_result(const CLI::App& command, const ConflictCommand& options,
+                    const std::function<void()>& work);
 
 /// Adds --forward and --up, which say how the model is seen. `options` outlive the command.
 void add_axis_options(CLI::App& command, ConflictCommand& options);
@@ -140,37 +149,55 @@ class NewOutputs {
 };
 
 /// A column of a table on the terminal.
+template <typename Row>
 struct TextColumn {
   std::string title;
-  std::size_t least_width = 0;
-  std::vector<std::string> cells = {};
+  std::size_t least_width;
+  std::function<std::string(const Row&)> cell;
   bool to_left = false;  ///< as words are at the end of a line
-
-  std::size_t width() const;
-};
-
-/// Adds columns of some rows.
-template <typename Row>
-class TextColumns {
- public:
-  explicit TextColumns(std::vector<const Row*> rows) : rows_(std::move(rows)) {}
-
-  template <typename CellOf>
-  TextColumn& add(const std::string& title, std::size_t least_width, const CellOf& cell_of) {
-    TextColumn& column = columns.emplace_back(TextColumn{title, least_width});
-    for (const Row* row : rows_) column.cells.push_back(cell_of(*row));
-    return column;
-  }
-
-  std::vector<TextColumn> columns;
-
- private:
-  std::vector<const Row*> rows_;
 };
 
 /// The titles in a line, and each row in one.
-std::string table_text(const std::vector<TextColumn>& columns);
+template <typename Row>
+std::string table_text(const std::vector<TextColumn<Row>>& columns,
+                       const std::vector<const Row*>& rows) {
+  std::vector<std::string> lines(1 + rows.size());
+  for (const auto& [title, least_width, cell_of, to_left] : columns) {
+    std::vector<std::string> cells{title};
+    for (const Row* row : rows) cells.push_back(cell_of(*row));
+    std::size_t width = to_left ? 0 : least_width;
+    for (const std::string& cell : cells) width = std::max(width, to_left ? 0 : cell.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      lines[i] += fmt::format("{}{:>{}}", lines[i].empty() ? "" : "  ", cells[i], width);
+    }
+  }
+  return fmt::format("{}\n", fmt::join(lines, "\n"));
+}
+
 /// A range of chainages or stations.
 std::string range_text(double from, double to);
+
+/// The first `most` rows as a table, and how many more there are; empty without rows. The columns
+/// of their chainages and stations stand before the column `at`.
+template <typename Row>
+std::string stretches_text(std::vector<TextColumn<Row>> columns, std::ptrdiff_t at,
+                           const std::vector<Row>& rows, std::size_t most, const std::string& unit,
+                           const char* one, const char* many) {
+  std::vector<const Row*> shown;
+  for (std::size_t i = 0; i < std::min(most, rows.size()); ++i) shown.push_back(&rows[i]);
+  if (shown.empty()) return "";
+  if (rows.front().station_from) {
+    columns.insert(columns.begin() + at, {"station (m)", 23, [](const Row& row) {
+                                            return range_text(*row.station_from, *row.station_to);
+                                          }});
+  }
+  columns.insert(columns.begin() + at, {"chainage (" + unit + ")", 19, [](const Row& row) {
+                                          return range_text(row.chainage_from, row.chainage_to);
+                                        }});
+  const std::size_t more = rows.size() - shown.size();
+  return table_text(columns, shown) + (more == 0 ? ""
+                                                 : "and " + counted(more, one, many) +
+                                                       " more, which --show or an output shows\n");
+}
 
 }  // namespace clearway::tool

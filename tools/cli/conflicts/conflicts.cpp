@@ -1,11 +1,12 @@
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstddef>
+#include <ctime>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,7 +19,6 @@
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
-#include "cli/run_again.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
@@ -33,6 +33,7 @@
 #include "core/util/format.hpp"
 #include "findings/check_conflicts.hpp"
 #include "findings/conflict_rank.hpp"
+#include "findings/ledger/ledger_date.hpp"
 #include "io/files/pending_file.hpp"
 #include "io/models/sample_mesh.hpp"
 #include "io/result/answer.hpp"
@@ -90,12 +91,13 @@ std::string class_cell(const Conflict& c) {
 /// Columns of a terminal's line that the table takes at most.
 constexpr std::size_t kTableWidth = 100;
 
-/// The columns of some conflicts that their file knows. The centroid is left out where it does not
-/// fit; the files of conflicts have it.
-std::vector<TextColumn> columns_of(const ConflictFile& file,
-                                   const std::vector<const Conflict*>& rows) {
-  TextColumns<Conflict> table(rows);
-  const auto add = [&](const char* title, const auto& cell) { table.add(title, 0, cell); };
+/// A table of some conflicts, with what their file knows. The centroid is left out where it does
+/// not fit; the files of conflicts have it.
+std::string table_of(const ConflictFile& file, const std::vector<const Conflict*>& rows) {
+  std::vector<TextColumn<Conflict>> columns;
+  const auto add = [&](const char* title, const auto& cell) {
+    columns.push_back({title, 0, cell});
+  };
   const Conflicts& all = file.conflicts;
   const double metre = file.metres_per_unit();
   add("id", [](const Conflict& c) { return std::to_string(c.id); });
@@ -141,13 +143,13 @@ std::vector<TextColumn> columns_of(const ConflictFile& file,
   if (std::ranges::any_of(rows, [](const Conflict* c) { return !class_words(*c).empty(); })) {
     add("classified", class_cell);
   }
-  std::size_t width = 0;
-  for (const TextColumn& column : table.columns) width += column.width() + 2;
   add("centroid", [](const Conflict& c) {
     return fmt::format("{:.3f} {:.3f} {:.3f}", c.centroid.x, c.centroid.y, c.centroid.z);
   });
-  if (width + table.columns.back().width() > kTableWidth) table.columns.pop_back();
-  return table.columns;
+  std::string text = table_text(columns, rows);
+  if (text.find('\n') <= kTableWidth) return text;
+  columns.pop_back();
+  return table_text(columns, rows);
 }
 
 /// A clause with the stations of a group, empty without stations.
@@ -225,7 +227,7 @@ std::string conflict_text(const ConflictFile& file, std::size_t most) {
   const std::vector<const Conflict*> rows = worst_first(conflicts, most);
   if (rows.size() < conflicts.listed.size()) text += fmt::format("the worst {}, ", rows.size());
   text += fmt::format("lengths in {}:\n", symbol_of(file.unit()));
-  return text + table_text(columns_of(file, rows));
+  return text + table_of(file, rows);
 }
 
 /// A line about a row of the ledger that needs one, because its status or a reason says more than
@@ -293,23 +295,15 @@ void tell_of_unknown_sides(const ConflictsCommand& options, const Result& result
 
 /// A day, or a time in UTC, in the form of ISO 8601.
 std::string full_date(const std::string& text) {
-  std::string full = text.size() == 10 ? text + "T00:00:00Z" : text;
-  constexpr std::string_view kForm = "0000-00-00T00:00:00Z";
-  bool good = full.size() == kForm.size();
-  for (std::size_t i = 0; good && i < kForm.size(); ++i) {
-    const bool digit = full[i] >= '0' && full[i] <= '9';
-    good = kForm[i] == '0' ? digit : full[i] == kForm[i];
-  }
-  const auto number = [&](std::size_t at, std::size_t digits) {
-    return static_cast<unsigned>(std::stoul(full.substr(at, digits)));
-  };
-  good =
-      good &&
-      std::chrono::year_month_day(std::chrono::year(static_cast<int>(number(0, 4))),
-                                  std::chrono::month(number(5, 2)), std::chrono::day(number(8, 2)))
-          .ok() &&
-      number(11, 2) < 24 && number(14, 2) < 60 && number(17, 2) < 60;
-  if (good) return full;
+  constexpr std::size_t kDay = 10;  // its characters
+  const std::string full = text.size() == kDay ? text + "T00:00:00Z" : text;
+  const std::optional<WrittenDay> day = day_of(full.substr(0, kDay));
+  std::tm time{};
+  const bool has_time = full.size() > kDay &&
+                        ::strptime(full.c_str() + kDay, "T%H:%M:%SZ", &time) != nullptr &&
+                        time.tm_sec < 60;
+  if (day && has_time && full == fmt::format("{}T{:%H:%M:%S}Z", text_of(day->day), time))
+    return full;
   throw CLI::ValidationError("--date", text +
                                            ": expected a day such as 2025-03-31, or a time such "
                                            "as 2025-03-31T12:00:00Z");
@@ -426,19 +420,17 @@ void add_conflicts(CLI::App& program, int& exit_code) {
       "clearances have their least distance.\n"
       "Example: clearway conflicts out.h5 --trajectory path.txt -o conflicts.csv");
   command->callback([options, command, &exit_code] {
-    run_stoppable(options->result, kStartsAgain, [&] {
-      advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
-        const auto [text, worst, json, verdict, accepted, outside] = perform(*options);
-        if (options->json) {
-          if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
-          print(json);
-        } else {
-          print(text + (worst.empty() ? "" : worst + "\n") +
-                (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n") +
-                (accepted.empty() ? "" : accepted + "\n"));
-        }
-        if (options->fail_on_collision) exit_code = exit_code_of(outside);
-      });
+    work_on_result(*command, *options, [&] {
+      const auto [text, worst, json, verdict, accepted, outside] = perform(*options);
+      if (options->json) {
+        if (!verdict.empty()) spdlog::info("the verdict of this result is {}", verdict);
+        print(json);
+      } else {
+        print(text + (worst.empty() ? "" : worst + "\n") +
+              (verdict.empty() ? "" : "the verdict of this result is " + verdict + "\n") +
+              (accepted.empty() ? "" : accepted + "\n"));
+      }
+      if (options->fail_on_collision) exit_code = exit_code_of(outside);
     });
   });
 }

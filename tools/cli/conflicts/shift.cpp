@@ -19,7 +19,6 @@
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
-#include "cli/run_again.hpp"
 #include "cli/run_options.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/field_options.hpp"
@@ -109,34 +108,23 @@ std::string text_of(const ShiftFile& file, std::size_t most) {
       fmt::format(", of which {} can be freed by a shift {}; {}\n", freed,
                   limits_text(table, file.unit), counted(table.searches, "search", "searches")) +
       small_text(file);
-  const std::size_t shown = std::min(most, table.conflicts.size());
-  if (shown == 0) return text;
-  std::vector<const StretchShift*> rows;
-  for (std::size_t i = 0; i < shown; ++i) rows.push_back(&table.conflicts[i]);
-  TextColumns<StretchShift> of(rows);
-  of.add("conflict", 8, [](const StretchShift& row) { return std::to_string(row.conflict); });
-  of.add("chainage (" + file.unit + ")", 19,
-         [](const StretchShift& row) { return range_text(row.chainage_from, row.chainage_to); });
-  if (table.conflicts.front().station_from) {
-    of.add("station (m)", 23,
-           [](const StretchShift& row) { return range_text(*row.station_from, *row.station_to); });
-  }
-  of.add("poses", 13, [](const StretchShift& row) {
-    return fmt::format("{} - {}", row.first_pose, row.last_pose);
-  });
-  of.add("searches", 8, [](const StretchShift& row) { return std::to_string(row.searches); });
-  of.add("shift", 0, [&](const StretchShift& row) {
-      return shift_text(row, table, file.unit) +
-             (row.least_distance
-                  ? fmt::format(", with {:.3f} {} of room", *row.least_distance, file.unit)
-                  : "");
-    }).to_left = true;
-  text += table_text(of.columns);
-  if (shown < table.conflicts.size()) {
-    text += "and " + counted(table.conflicts.size() - shown, "conflict") +
-            " more, which --show or an output shows\n";
-  }
-  return text;
+  using Row = StretchShift;
+  return text + stretches_text<Row>(
+                    {{"conflict", 8, [](const Row& row) { return std::to_string(row.conflict); }},
+                     {"poses", 13,
+                      [](const Row& row) {
+                        return fmt::format("{} - {}", row.first_pose, row.last_pose);
+                      }},
+                     {"searches", 8, [](const Row& row) { return std::to_string(row.searches); }},
+                     {"shift", 0,
+                      [&](const Row& row) {
+                        return shift_text(row, table, file.unit) +
+                               (row.least_distance ? fmt::format(", with {:.3f} {} of room",
+                                                                 *row.least_distance, file.unit)
+                                                   : "");
+                      },
+                      true}},
+                    1, table.conflicts, most, file.unit, "conflict", "conflicts");
 }
 
 /// The table in words, or in JSON.
@@ -225,10 +213,7 @@ void add_shift(CLI::App& program) {
       "Example: clearway shift out.h5 --env site.h5 --model car.ply --trajectory path.txt "
       "--lateral -2,2 --step 0.01 -o shifts.json");
   command->callback([options, command] {
-    run_stoppable(options->result, kStartsAgain, [&] {
-      advising_to_run_again(*command, {{options->result, options->trajectory}},
-                            [&] { print(perform(*options)); });
-    });
+    work_on_result(*command, *options, [&] { print(perform(*options)); });
   });
 }
 

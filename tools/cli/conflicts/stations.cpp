@@ -19,7 +19,6 @@
 #include "cli/commands.hpp"
 #include "cli/conflicts/conflict_inputs.hpp"
 #include "cli/input_roles.hpp"
-#include "cli/run_again.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"
 #include "cli/support/options.hpp"
@@ -90,34 +89,17 @@ std::string totals_text(const StationTable& table, const StationsCommand& option
          count(Verdict::kClear) + "\n";
 }
 
-/// The first `most` rows as a table.
 std::string rows_text(const StationTable& table, std::size_t most, const std::string& unit) {
-  if (table.rows.empty() || most == 0) return "";
-  std::vector<const StationRow*> rows;
-  for (std::size_t i = 0; i < std::min(most, table.rows.size()); ++i)
-    rows.push_back(&table.rows[i]);
-  TextColumns<StationRow> of(rows);
-  of.add("chainage (" + unit + ")", 19,
-         [](const StationRow& row) { return range_text(row.chainage_from, row.chainage_to); });
-  if (table.rows.front().station_from) {
-    of.add("station (m)", 23,
-           [](const StationRow& row) { return range_text(*row.station_from, *row.station_to); });
-  }
-  of.add("least", 8, least_cell);
-  of.add("left", 8, [](const StationRow& row) { return cell(row.left); });
-  of.add("right", 8, [](const StationRow& row) { return cell(row.right); });
-  of.add("above", 8, [](const StationRow& row) { return cell(row.above); });
-  of.add("overthrow end", 13, [](const StationRow& row) { return cell(greatest(row).end); });
-  of.add("overthrow middle", 16, [](const StationRow& row) { return cell(greatest(row).middle); });
-  of.add("verdict", 0, [](const StationRow& row) {
-      return name_of(row.verdict) + why(row);
-    }).to_left = true;
-  std::string text = table_text(of.columns);
-  if (rows.size() < table.rows.size()) {
-    text += "and " + counted(table.rows.size() - rows.size(), "stretch", "stretches") +
-            " more, which --show or an output shows\n";
-  }
-  return text;
+  using Row = StationRow;
+  return stretches_text<Row>(
+      {{"least", 8, least_cell},
+       {"left", 8, [](const Row& row) { return cell(row.left); }},
+       {"right", 8, [](const Row& row) { return cell(row.right); }},
+       {"above", 8, [](const Row& row) { return cell(row.above); }},
+       {"overthrow end", 13, [](const Row& row) { return cell(greatest(row).end); }},
+       {"overthrow middle", 16, [](const Row& row) { return cell(greatest(row).middle); }},
+       {"verdict", 0, [](const Row& row) { return name_of(row.verdict) + why(row); }, true}},
+      0, table.rows, most, unit, "stretch", "stretches");
 }
 
 StationOptions options_of(const StationsCommand& command) {
@@ -198,11 +180,9 @@ void add_stations(CLI::App& program) {
       "the verdict. Distances need a result with clearances or a profile.\n"
       "Example: clearway stations out.h5 --trajectory path.txt --every 5 -o stations.csv");
   command->callback([options, command] {
-    run_stoppable(options->result, kStartsAgain, [&] {
-      advising_to_run_again(*command, {{options->result, options->trajectory}}, [&] {
-        const auto [text, json] = perform(*options);
-        print(options->json ? json : text);
-      });
+    work_on_result(*command, *options, [&] {
+      const auto [text, json] = perform(*options);
+      print(options->json ? json : text);
     });
   });
 }
