@@ -21,7 +21,6 @@
 #include "clearway/clearway.hpp"
 #include "cli/check/check_plan.hpp"
 #include "cli/check/check_record.hpp"
-#include "cli/check/step_options.hpp"
 #include "cli/commands.hpp"
 #include "cli/input_roles.hpp"
 #include "cli/steps.hpp"
@@ -53,59 +52,58 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-using Words = std::vector<std::string>;
 
 /// Scans have hardly ever more bytes for a point.
 constexpr std::uint64_t kMostBytesOfPoint = 64;
 
 constexpr const char* kGoesOn = "the same command goes on from what was finished";
 
-/// Whether a remedy is about an output that is there already.
-bool is_about_other_question(Remedy remedy) {
-  return remedy == Remedy::kOverwrite || remedy == Remedy::kReadOrOverwrite ||
-         remedy == Remedy::kResumeOrOverwrite || remedy == Remedy::kOverwriteNotResume ||
-         remedy == Remedy::kRestoreOptions || remedy == Remedy::kOtherPart;
-}
+constexpr const char* kAnswersThis =
+    "--force answers this question in its place, and keeps what still agrees, or -o names another "
+    "folder";
 
-/// Advice on an error of a step in terms of check's own options, where that of the step would be
-/// wrong.
-std::string advice_of_check(const Error& error) {
-  if (is_about_other_question(error.remedy())) {
-    return "; --force answers this question in its place, and keeps what still agrees, or -o names "
-           "another folder";
-  }
-  switch (error.remedy()) {
-    case Remedy::kResume:
-    case Remedy::kNewProcess:
-      return std::string("; ") + kGoesOn;
-    case Remedy::kCpuDevice:
-      return "; --device cpu does without a GPU; nvidia-smi lists the GPUs that can be used";
-    case Remedy::kStandardInput:
-      return "; write it into a file first";
-    case Remedy::kSampleMesh:
-      return "; if it is the vehicle, --model takes it";
-    case Remedy::kFreeDisk:
-      return "; free some room, or give -o a folder on a disk with more";
-    default:
-      return "";
-  }
+/// Advice on errors of a step in terms of check's own options, where that of the step would be
+/// wrong. kAnswersThis is about an output that is there already.
+constexpr std::pair<Remedy, const char*> kAdvice[]{
+    {Remedy::kOverwrite, kAnswersThis},
+    {Remedy::kReadOrOverwrite, kAnswersThis},
+    {Remedy::kResumeOrOverwrite, kAnswersThis},
+    {Remedy::kOverwriteNotResume, kAnswersThis},
+    {Remedy::kRestoreOptions, kAnswersThis},
+    {Remedy::kOtherPart, kAnswersThis},
+    {Remedy::kResume, kGoesOn},
+    {Remedy::kNewProcess, kGoesOn},
+    {Remedy::kCpuDevice,
+     "--device cpu does without a GPU; nvidia-smi lists the GPUs that can be used"},
+    {Remedy::kStandardInput, "write it into a file first"},
+    {Remedy::kSampleMesh, "if it is the vehicle, --model takes it"},
+    {Remedy::kFreeDisk, "free some room, or give -o a folder on a disk with more"}};
+
+/// The advice on an error; null where that of the step is right.
+const char* advice_on(const Error& error) {
+  const auto found =
+      std::ranges::find(kAdvice, error.remedy(), &std::pair<Remedy, const char*>::first);
+  return found == std::end(kAdvice) ? nullptr : found->second;
 }
 
 /// Calls a step. Errors whose advice is about options that check does not have get check's own.
 template <typename Call>
 auto in_terms_of_check(const Call& call) {
-  const auto text = [](const Error& error) { return error.what() + advice_of_check(error); };
-  const auto remedy = [](const Error& error) {
-    return advice_of_check(error).empty() ? error.remedy() : Remedy::kNone;
+  const auto said_anew = [](const auto& error) {
+    const char* const advice = advice_on(error);
+    return advice == nullptr
+               ? error
+               : std::decay_t<decltype(error)>(error.what() + std::string("; ") + advice,
+                                               Remedy::kNone, error.amount());
   };
   try {
     return call();
   } catch (const UsageError& error) {
-    throw UsageError(text(error), remedy(error), error.amount());
+    throw said_anew(error);
   } catch (const InputError& error) {
-    throw InputError(text(error), remedy(error), error.amount());
+    throw said_anew(error);
   } catch (const ResourceError& error) {
-    throw ResourceError(text(error), remedy(error), error.amount());
+    throw said_anew(error);
   }
 }
 
@@ -115,7 +113,7 @@ class Step {
  public:
   explicit Step(Words words) : words_(std::move(words)) {
     add_options(app_, options_);
-    parse_words(app_, Words(words_.begin() + 1, words_.end()));
+    app_.parse(Words(words_.rbegin(), words_.rend() - 1));  // CLI11 takes the last one first
   }
 
   Command& options() { return options_; }
@@ -197,7 +195,7 @@ class Check {
     try {
       return do_step(false);
     } catch (const UsageError& error) {
-      if (!is_about_other_question(error.remedy()) || !may_replace) throw;
+      if (advice_on(error) != kAnswersThis || !may_replace) throw;
     }
     return do_step(true);
   }

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "cli/check/step_options.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/options.hpp"
 #include "cli/vehicle/vehicle_inputs.hpp"
@@ -22,15 +21,24 @@
 #include "io/store/file_kind.hpp"
 
 namespace clearway::tool {
+
+/// How check deals with the options of a step.
+struct StepOptions {
+  Words without;                                                  ///< those that check sets itself
+  std::vector<std::pair<std::string, std::string>> renamed = {};  ///< of the step, and of check
+  bool takes_denser_path = true;  ///< whether it takes the path with more poses where there is one
+
+  /// The name that check gives an option of the step; empty where it offers none.
+  std::string name_in_check(const std::string& name) const {
+    if (std::ranges::find(without, name) != without.end()) return "";
+    const auto other =
+        std::ranges::find(renamed, name, &std::pair<std::string, std::string>::first);
+    return other == renamed.end() ? name : other->second;
+  }
+};
+
 namespace {
 
-using Words = CheckPlan::Words;
-
-/// Clearances and profile are asked for up to so many times the radius, unless the user says
-/// otherwise.
-constexpr double kClearanceRadii = 3, kProfileRadii = 5;
-
-// How check deals with the options of its steps.
 const StepOptions kConvertOptions{
     {"--output", "--force", "--resume", "--near", "--within", "--json", "--help"},
     {{"--lever-arm", "--origins-lever-arm"},
@@ -38,12 +46,13 @@ const StepOptions kConvertOptions{
      {"--angles", "--origins-angles"},
      {"--trajectory-crs", "--origins-crs"},
      {"--trajectory-datum", "--origins-datum"},
-     {"--trajectory-unit", "--origins-unit"}}};
+     {"--trajectory-unit", "--origins-unit"}},
+    false};
 // --gap is that of conflicts, and only a run with an error budget takes it.
 const StepOptions kRunOptions{{"--env", "--output", "--first-pose", "--gap", "--shard", "--force",
                                "--resume", "--fail-on-collision", "--json", "--help"}};
 const StepOptions kResampleOptions{
-    {"--output", "--env", "--max-motion", "--force", "--json", "--help"}};
+    {"--output", "--env", "--max-motion", "--force", "--json", "--help"}, {}, false};
 // The run turns the model, and what reads its result knows that.
 const StepOptions kConflictsOptions{{"--output", "--env", "--forward", "--up", "--date",
                                      "--fail-on-collision", "--force", "--json", "--help"}};
@@ -54,6 +63,17 @@ const StepOptions kStationsOptions{
 const StepOptions kReportOptions{{"--env", "--output", "--section", "--forward", "--up", "--shifts",
                                   "--force", "--json", "--help"}};
 
+/// A distance that is asked for up to so many times the radius, unless the user says otherwise.
+struct UsualDistance {
+  const char* option;
+  double radii;
+  const char* description;
+};
+
+constexpr UsualDistance kUsualDistances[]{
+    {"--clearance", 3, "Distances of every point closer than this are found"},
+    {"--profile", 5, "The least distance at every pose is found if it is below this"}};
+
 /// The options that say how the path of the question is read.
 constexpr std::array kReading{"--trajectory-format", "--lever-arm",        "--angles",
                               "--trajectory-crs",    "--trajectory-datum", "--trajectory-unit"};
@@ -63,21 +83,44 @@ Words operator+(Words a, const Words& b) {
   return a;
 }
 
+/// The long name of an option with its hyphens; empty for a positional argument.
+std::string long_name(const CLI::Option& option) {
+  return option.get_lnames().empty() ? "" : "--" + option.get_lnames().front();
+}
+
+/// Adds an option that takes what another one takes, and keeps it as text.
+void add_like(CLI::App& check, const CLI::Option& original, const std::string& name) {
+  const bool renamed = name != long_name(original);
+  const std::string description =
+      original.get_description() + (renamed ? "; of --origins-path" : "");
+  const std::string group =
+      renamed ? std::string(title_of(OptionGroup::kStore)) : original.get_group();
+  if (is_flag(original)) {
+    check.add_flag(name, description)->group(group);
+    return;
+  }
+  CLI::Option* option = check.add_option(name, CLI::callback_t(), description);
+  option->type_name(original.get_type_name())->group(group);
+  if (!original.get_default_str().empty()) option->default_str(original.get_default_str());
+  if (original.get_required()) option->required();
+  if (original.get_items_expected_max() > 1) {
+    option->expected(1, CLI::detail::expected_max_vector_size)
+        ->allow_extra_args(original.get_allow_extra_args())
+        ->take_all();
+  }
+}
+
+/// Offers the options of a step that check does not have yet.
 template <typename Command>
 void offer(CLI::App& check, const StepOptions& how) {
   Command unused;
   CLI::App step;
   add_options(step, unused);
-  offer_options(check, step, how);
-}
-
-/// The options of a step that the command has been given.
-template <typename Command>
-Words given(const CLI::App& check, const StepOptions& how) {
-  Command unused;
-  CLI::App step;
-  add_options(step, unused);
-  return given_words(check, step, how);
+  for (const CLI::Option* option : step.get_options()) {
+    const std::string name = how.name_in_check(long_name(*option));
+    if (name.empty() || check.get_option_no_throw(name) != nullptr) continue;
+    add_like(check, *option, name);
+  }
 }
 
 /// A length as text, times a factor in round numbers: "10cm" times 3 is "30cm".
@@ -112,15 +155,10 @@ void offer_options_of_steps(CLI::App& check) {
   offer<ConflictsCommand>(check, kConflictsOptions);
   offer<StationsCommand>(check, kStationsOptions);
   offer<ReportCommand>(check, kReportOptions);
-  check.get_option("--clearance")
-      ->description(fmt::format(
-          "Distances of every point closer than this are found (default: {:g} times the radius)",
-          kClearanceRadii));
-  check.get_option("--profile")
-      ->description(
-          fmt::format("The least distance at every pose is found if it is below this (default: "
-                      "{:g} times the radius)",
-                      kProfileRadii));
+  for (const auto& [option, radii, description] : kUsualDistances) {
+    check.get_option(option)->description(
+        fmt::format("{} (default: {:g} times the radius)", description, radii));
+  }
 }
 
 CheckPlan::CheckPlan(const CheckCommand& options)
@@ -201,10 +239,41 @@ std::filesystem::path CheckPlan::environment() const {
   return has_store_ ? options_.inputs.front() : file(kStoreName);
 }
 
+/// The options of a step that the command has been given. The denser path is in the environment's
+/// frame and names its unit if that of the user does, so that what says how the file of the user is
+/// read goes.
+template <typename Command>
+Words CheckPlan::given(const StepOptions& how) const {
+  Command unused;
+  CLI::App step;
+  add_options(step, unused);
+  const bool is_denser = how.takes_denser_path && has_denser_path_;
+  Words words;
+  for (const CLI::Option* option : step.get_options()) {
+    const std::string of_step = long_name(*option), name = how.name_in_check(of_step);
+    const CLI::Option* given = name.empty() ? nullptr : check_.get_option_no_throw(name);
+    if (given == nullptr || !tool::is_given(*given)) continue;
+    if (is_denser && std::ranges::find(kReading, of_step) != kReading.end()) continue;
+    Words values = given->results();
+    if (is_denser && of_step == "--trajectory") values = {file(kPathName).string()};
+    if (is_flag(*option)) values = {""};
+    for (const std::string& value : values) {
+      if (is_flag(*option)) {
+        words.push_back(of_step);
+      } else if (value.starts_with('-') || value.empty()) {
+        words.push_back(of_step + "=" + value);
+      } else {
+        words.insert(words.end(), {of_step, value});
+      }
+    }
+  }
+  return words;
+}
+
 Words CheckPlan::convert(bool replacing) const {
   Words words{"convert"};
   for (const std::filesystem::path& input : scans_) words.push_back(input.string());
-  Words options = given<ConvertCommand>(check_, kConvertOptions);
+  Words options = given<ConvertCommand>(kConvertOptions);
   // Before its width is known, the words have no corridor whose bounds could be trusted.
   if (is_given("--near") && near_metres_ == 0) std::erase(options, "--trust-bounds");
   return words + Words{"-o", file(kStoreName).string()} + corridor() + options + again(replacing);
@@ -234,33 +303,12 @@ Words CheckPlan::resample() const {
                value_of("--radius"),
                "--env",
                environment().string()} +
-         vehicle + given<ChangeCommand>(check_, kResampleOptions) + Words{"--force"};
-}
-
-/// The words of a step with the denser path, which is in the environment's frame and names its unit
-/// if that of the user does, so that what says how the file of the user is read goes.
-Words CheckPlan::with_path(Words words) const {
-  if (!has_denser_path_) return words;
-  Words out;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    const std::size_t equals = words[i].find('=');
-    const std::string name = words[i].substr(0, equals);
-    const bool takes_value = equals == std::string::npos;
-    if (name == "--trajectory") {
-      out.insert(out.end(), {name, file(kPathName).string()});
-    } else if (std::ranges::find(kReading, name) == kReading.end()) {
-      out.push_back(words[i]);
-      continue;
-    }
-    if (takes_value) ++i;
-  }
-  return out;
+         vehicle + given<ChangeCommand>(kResampleOptions) + Words{"--force"};
 }
 
 Words CheckPlan::run(bool replacing) const {
-  Words words = Words{"run", "--env", environment().string()} +
-                with_path(given<RunOptions>(check_, kRunOptions)) + Words{"--first-pose"} +
-                distances();
+  Words words = Words{"run", "--env", environment().string()} + given<RunOptions>(kRunOptions) +
+                Words{"--first-pose"} + distances();
   if (has_budget() && is_given("--gap")) words = words + Words{"--gap", value_of("--gap")};
   return words + Words{"-o", file(kResultName).string()} + again(replacing);
 }
@@ -272,32 +320,31 @@ Words CheckPlan::conflicts() const {
     if (is_given("--date")) ledger = ledger + Words{"--date", value_of("--date")};
   }
   return Words{"conflicts", file(kResultName).string()} +
-         with_path(given<ConflictsCommand>(check_, kConflictsOptions)) + ledger +
+         given<ConflictsCommand>(kConflictsOptions) + ledger +
          Words{"-o", file(kConflictsName).string(), "--force"};
 }
 
 Words CheckPlan::stations() const {
-  return Words{"stations", file(kResultName).string()} +
-         with_path(given<StationsCommand>(check_, kStationsOptions)) +
+  return Words{"stations", file(kResultName).string()} + given<StationsCommand>(kStationsOptions) +
          Words{"-o", file(kStationsName).string(), "--force"};
 }
 
 Words CheckPlan::report(const std::string& date) const {
   Words words = Words{"report", file(kResultName).string(), "--env", environment().string()} +
-                with_path(given<ReportCommand>(check_, kReportOptions));
+                given<ReportCommand>(kReportOptions);
   if (!is_given("--date") && !date.empty()) words = words + Words{"--date", date};
   return words + Words{"-o", file(kReportName).string(), "--force"};
 }
 
 std::string CheckPlan::about_distances() const {
-  std::string text;
+  Words parts;
   const Words words = distances();
   for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
-    const double radii = words[i] == "--clearance" ? kClearanceRadii : kProfileRadii;
-    text += (text.empty() ? "" : " and ") +
-            fmt::format("{} {} ({:g} times the radius)", words[i], words[i + 1], radii);
+    const auto& usual = *std::ranges::find(kUsualDistances, words[i], &UsualDistance::option);
+    parts.push_back(
+        fmt::format("{} {} ({:g} times the radius)", words[i], words[i + 1], usual.radii));
   }
-  return text.empty() ? "" : "taken by default: " + text;
+  return parts.empty() ? "" : fmt::format("taken by default: {}", fmt::join(parts, " and "));
 }
 
 bool CheckPlan::has_ledger() const { return is_given("--ledger"); }
@@ -320,9 +367,10 @@ bool CheckPlan::has_budget() const {
 Words CheckPlan::distances() const {
   if (is_given("--between-poses")) return {};
   Words words;
-  const std::string radius = value_of("--radius");
-  if (!is_given("--clearance")) words = Words{"--clearance", times(radius, kClearanceRadii)};
-  if (!is_given("--profile")) words = words + Words{"--profile", times(radius, kProfileRadii)};
+  for (const UsualDistance& usual : kUsualDistances) {
+    if (is_given(usual.option)) continue;
+    words = words + Words{usual.option, times(value_of("--radius"), usual.radii)};
+  }
   return words;
 }
 

@@ -29,6 +29,10 @@ struct CheckCommand {
   const CLI::App* command = nullptr;  ///< the command that has these options
 };
 
+using Words = std::vector<std::string>;  ///< of a command line
+
+struct StepOptions;
+
 /// Adds the options that check passes on to its steps.
 void offer_options_of_steps(CLI::App& check);
 
@@ -38,8 +42,6 @@ class CheckPlan {
  public:
   /// The options outlive this object. Throws UsageError for a store among scans.
   explicit CheckPlan(const CheckCommand& options);
-
-  using Words = std::vector<std::string>;
 
   /// Whether the input is a store already, so that nothing is converted.
   bool has_store() const { return has_store_; }
@@ -81,7 +83,8 @@ class CheckPlan {
   std::string value_of(const char* name) const;
   bool has_budget() const;
   Words distances() const;
-  Words with_path(Words words) const;
+  template <typename Command>
+  Words given(const StepOptions& how) const;
   Words corridor() const;
 
   const CheckCommand& options_;

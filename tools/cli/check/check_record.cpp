@@ -30,22 +30,14 @@ ordered_json empty_record() {
 }
 
 ordered_json read_record(const std::filesystem::path& file) {
-  std::error_code unknown;
-  if (!std::filesystem::is_regular_file(file, unknown)) return empty_record();
+  const ordered_json empty = empty_record();
   try {
     ordered_json read = parse_json(text_of_file(file));
-    const ordered_json empty = empty_record();
-    for (const char* key : {"format", "version"}) {
-      if (read.value(key, ordered_json()) != empty[key]) return empty;
-    }
-    for (const char* key : {"files", "corridor"}) {
-      if (!read.contains(key) || !read[key].is_object()) return empty;
-    }
-    return read;
-  } catch (const JsonError&) {
-    return empty_record();
-  } catch (const ordered_json::exception&) {
-    return empty_record();
+    const bool fits =
+        read.at("format") == empty["format"] && read.at("version") == empty["version"];
+    return fits && read.at("files").is_object() && read.at("corridor").is_object() ? read : empty;
+  } catch (const std::exception&) {  // what is missing or damaged says nothing
+    return empty;
   }
 }
 
