@@ -66,7 +66,7 @@ struct ComparedSide {
     return answer.verdict() == Verdict::kUndecided || !answer.doubts().empty();
   }
   std::uint64_t listed_points() const {
-    return conflicts.colliding_points - conflicts.small_points;
+    return conflicts.colliding_points + conflicts.near_points - conflicts.small_points;
   }
 
   OpenedResult opened;
