@@ -64,14 +64,12 @@ double DrawnBody::distance_to(const Vec3& place, std::uint32_t pose) const {
   if (const double inside = squared_depth(*this, place, *there); inside > 0) {
     return -std::sqrt(inside);
   }
-  for (const auto& [a, b, c] : model.triangles) {
-    const Triangle triangle{model.vertices[a], model.vertices[b], model.vertices[c]};
-    least = std::min(least, squared_distance(place, transform(*there, triangle)));
-  }
-  if (model.is_surface()) return std::sqrt(least);
-  for (const Vec3& m : model.vertices) {
-    least = std::min(least, squared_distance(place, transform(*there, m)));
-  }
+  const auto note = [&](const auto& part) {
+    least = std::min(least, squared_distance(place, transform(*there, part)));
+  };
+  const std::vector<Vec3>& corners = model.vertices;
+  for (const auto& [a, b, c] : model.triangles) note(Triangle{corners[a], corners[b], corners[c]});
+  if (!model.is_surface()) std::ranges::for_each(corners, note);
   return std::sqrt(least);
 }
 

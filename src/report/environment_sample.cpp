@@ -81,17 +81,19 @@ class Sampler {
     return high;
   }
 
-  /// Picks points. area: the area that each stands for, or 0 for all points.
+  /// Picks points, in no order. area: the area that each stands for, or 0 for all points.
   std::vector<PagePoint> pick(double area, Progress& progress) const {
-    std::vector<std::vector<PagePoint>> of_cell(store_.cells().size());
-    progress.begin("environment points of the page", of_cell.size(), "cells");
-    for_each_parallel(of_cell.size(), [&](std::size_t cell) {
+    tbb::enumerable_thread_specific<std::vector<PagePoint>> of_threads;
+    progress.begin("environment points of the page", store_.cells().size(), "cells");
+    for_each_parallel(store_.cells().size(), [&](std::size_t cell) {
       throw_if_stopped(progress);
-      pick_cell(static_cast<std::uint32_t>(cell), area, of_cell[cell]);
+      pick_cell(static_cast<std::uint32_t>(cell), area, of_threads.local());
       progress.advance(1);
     });
     progress.end();
-    return joined(of_cell);
+    std::vector<PagePoint> out;
+    for (const auto& points : of_threads) out.insert(out.end(), points.begin(), points.end());
+    return out;
   }
 
  private:
@@ -100,16 +102,6 @@ class Sampler {
     std::uint64_t points = 0;
     std::array<std::uint64_t, kBins> bins{};
   };
-
-  static std::vector<PagePoint> joined(const std::vector<std::vector<PagePoint>>& parts) {
-    std::vector<std::size_t> first{0};
-    for (const auto& part : parts) first.push_back(first.back() + part.size());
-    std::vector<PagePoint> out(first.back());
-    for_each_parallel(parts.size(), [&](std::size_t i) {
-      std::ranges::copy(parts[i], out.begin() + static_cast<std::ptrdiff_t>(first[i]));
-    });
-    return out;
-  }
 
   Box box_of(std::uint32_t cell) const {
     return position_box(store_.quantisation(), store_.cells()[cell].box);

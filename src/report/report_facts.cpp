@@ -142,12 +142,7 @@ Json json_of_query(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   Json out = Json::object();
   for_each_field(kQueryValues, [&](const auto& field) {
-    if (!is_listed(field, header)) return;
-    if constexpr (requires { *field.of(header); }) {
-      out[field.key] = *field.of(header);
-    } else {
-      out[field.key] = field.of(header);
-    }
+    if (is_listed(field, header)) out[field.key] = fact_json(field.of(header));
   });
   return out;
 }
@@ -308,26 +303,21 @@ Json json_of(const PageLattice& lattice) {
   return members_json<&PageLattice::origin, &PageLattice::step>(lattice);
 }
 
-/// A label that is a number: how its column counts, and how its values are written.
-Json json_of(const PoseLabel<double>& label, const std::vector<double>& values) {
-  return {{"key", label.key},
-          {"title", label.title},
-          {"unit", symbol_of(label.unit)},
-          {"step", kLabelStep},
-          {"origin", origin_on_page(label, values)}};
-}
-
-Json json_of(const PoseLabel<std::string>& label, const std::vector<std::string>&) {
-  return {{"key", label.key}, {"title", label.title}};
-}
-
-/// The labels that the path has, in the order in which sentences of the page name them.
+/// The labels that the path has, in the order in which sentences of the page name them; of numbers
+/// also how their column counts.
 Json json_of_labels(const PoseLabels& labels) {
   Json list = Json::array();
   for_each_label({LabelPlace::kBesideChainage, LabelPlace::kFirst, LabelPlace::kNext},
                  [&](const auto& label) {
                    const auto& values = label.of(labels);
-                   if (!values.empty()) list.push_back(json_of(label, values));
+                   if (values.empty()) return;
+                   Json json{{"key", label.key}, {"title", label.title}};
+                   if constexpr (!std::decay_t<decltype(label)>::is_text()) {
+                     json["unit"] = symbol_of(label.unit);
+                     json["step"] = kLabelStep;
+                     json["origin"] = origin_on_page(label, values);
+                   }
+                   list.push_back(std::move(json));
                  });
   return list;
 }

@@ -56,25 +56,29 @@ std::string stop_words(const SectionStop& stop, const SectionData& section) {
          unit + " along the path, " + cell_words(stop.cell, section);
 }
 
+/// The answer in a sentence. passes(): how far a load passes; stopped(stop): where it is stopped.
+template <typename Passes, typename Stopped>
+std::string sentence_of(const SectionCheck& check, const SectionData& section, const Passes& passes,
+                        const Stopped& stopped) {
+  const std::string warnings = warning_words(section);
+  if (check.verdict == SectionVerdict::kPasses) return passes_words(section) + passes() + warnings;
+  if (check.verdict == SectionVerdict::kUnknown) return "unknown: " + check.reason + warnings;
+  return "stopped: " + stopped(stop_words(*check.stop, section)) + " in all" + warnings;
+}
+
 }  // namespace
 
 std::string verdict_sentence(const SectionCheck& check, const SectionData& section, double margin) {
-  const std::string unit = section_unit(section);
-  const std::string warnings = warning_words(section);
-  const std::string kept = margin > 0 ? " with a margin of " + format_brief(margin) + " " + unit
-                           : section.parameters.margin > 0 ? " without a margin"
-                                                           : "";
-  switch (check.verdict) {
-    case SectionVerdict::kPasses:
-      return passes_words(section) + "the load passes " + extent_words(section) + kept + warnings;
-    case SectionVerdict::kStopped:
-      return "stopped: the load is stopped" + kept + " " + stop_words(*check.stop, section) +
-             ", and in " + counted(check.stops.size(), "stretch", "stretches") + " in all" +
-             warnings;
-    case SectionVerdict::kUnknown:
-      break;
-  }
-  return "unknown: " + check.reason + warnings;
+  const std::string kept =
+      margin > 0 ? " with a margin of " + format_brief(margin) + " " + section_unit(section)
+      : section.parameters.margin > 0 ? " without a margin"
+                                      : "";
+  return sentence_of(
+      check, section, [&] { return "the load passes " + extent_words(section) + kept; },
+      [&](const std::string& where) {
+        return "the load is stopped" + kept + " " + where + ", and in " +
+               counted(check.stops.size(), "stretch", "stretches");
+      });
 }
 
 namespace {
@@ -96,23 +100,17 @@ std::string judged_words(const OutlineTableCheck& check) {
 }  // namespace
 
 std::string table_sentence(const OutlineTableCheck& check, const SectionData& section) {
-  const std::string warnings = warning_words(section);
-  switch (check.verdict) {
-    case SectionVerdict::kPasses:
-      return passes_words(section) + "the outlines of " + judged_words(check) + " pass " +
-             extent_words(section) + warnings;
-    case SectionVerdict::kStopped: {
-      const OutlineRowCheck& row = check.rows[check.stop->row];
-      std::set<std::uint32_t> bins;
-      for (const SectionStop& stop : check.stops) bins.insert(stop.bin);
-      return "stopped: the outline of line " + std::to_string(row.line) + ", " + row.file.string() +
-             ", is stopped " + stop_words(*check.stop, section) + ". A load is stopped in " +
-             counted(bins.size(), "stretch", "stretches") + " in all" + warnings;
-    }
-    case SectionVerdict::kUnknown:
-      break;
-  }
-  return "unknown: " + check.reason + warnings;
+  return sentence_of(
+      check, section,
+      [&] { return "the outlines of " + judged_words(check) + " pass " + extent_words(section); },
+      [&](const std::string& where) {
+        const OutlineRowCheck& row = check.rows[check.stop->row];
+        std::set<std::uint32_t> bins;
+        for (const SectionStop& stop : check.stops) bins.insert(stop.bin);
+        return "the outline of line " + std::to_string(row.line) + ", " + row.file.string() +
+               ", is stopped " + where + ". A load is stopped in " +
+               counted(bins.size(), "stretch", "stretches");
+      });
 }
 
 std::string row_words(const OutlineRowCheck& check, const SectionData& section) {
