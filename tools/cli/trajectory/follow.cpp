@@ -13,6 +13,7 @@
 #include "cli/support/options.hpp"
 #include "cli/support/trajectory_options.hpp"
 #include "cli/trajectory/commands.hpp"
+#include "cli/vehicle/vehicle_inputs.hpp"
 #include "core/trajectory/chainage.hpp"
 #include "core/trajectory/follow/follow_path.hpp"
 #include "core/trajectory/trajectory_doubts.hpp"
@@ -150,8 +151,12 @@ void write_followed(FollowCommand& options) {
   if (is_of_vehicle && options.body.empty()) {
     throw UsageError("--vehicle: which body is missing; expected --body with its name");
   }
-  if (!is_of_vehicle) mount_of(options);  // it throws where that cannot be used
-  refuse_overwriting_inputs(options, {options.vehicle});
+  if (is_of_vehicle) {
+    refuse_overwriting_inputs(options, vehicle_inputs(options.vehicle, {}));
+  } else {
+    mount_of(options);  // it throws where that cannot be used
+    refuse_overwriting_inputs(options);
+  }
   const int threads = threads_or_all(options.threads);
   check_threads(threads);
   write_output(options, [&](const std::filesystem::path& file) {
