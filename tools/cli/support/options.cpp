@@ -138,27 +138,14 @@ std::string wrapped_paragraphs(const std::string& text) {
 /// The choices of an option, with what stands before and after them on its left side in a help
 /// text, if that is too long for a line.
 struct LongChoices {
-  std::string before, choices, after;
+  std::string before, after;
+  std::vector<std::string> choices;
 
   static std::optional<LongChoices> in(const std::string& name, const std::string& values) {
     const std::size_t begin = values.find(":{"), end = values.find('}', begin);
     if (end == std::string::npos || name.size() + values.size() + 2 <= kHelpWidth) return {};
-    std::string choices = values.substr(begin + 2, end - begin - 2);
-    for (std::size_t at = 0; (at = choices.find(',', at)) != std::string::npos; at += 2) {
-      choices.replace(at, 1, ", ");
-    }
-    return LongChoices{values.substr(0, begin), choices, values.substr(end + 1)};
-  }
-
-  /// Whether a text names all of them.
-  bool are_named_in(const std::string& text) const {
-    std::istringstream names(choices);
-    bool all = true;
-    for (std::string name; names >> name;) {
-      if (name.ends_with(',')) name.pop_back();
-      all = all && text.find(name) != std::string::npos;
-    }
-    return all;
+    return LongChoices{values.substr(0, begin), values.substr(end + 1),
+                       CLI::detail::split(values.substr(begin + 2, end - begin - 2), ',')};
   }
 };
 
@@ -188,8 +175,11 @@ class HelpInOrder : public CLI::Formatter {
   std::string make_option_desc(const CLI::Option* option) const override {
     std::string text = CLI::Formatter::make_option_desc(option);
     const auto choices = choices_of(option);
-    if (choices && !choices->are_named_in(text)) {
-      text += ": " + choices->choices;
+    const auto is_unnamed = [&](const std::string& choice) {
+      return text.find(choice) == std::string::npos;
+    };
+    if (choices && std::ranges::any_of(choices->choices, is_unnamed)) {
+      text += ": " + CLI::detail::join(choices->choices, ", ");
     }
     return wrapped(text, kHelpWidth - kTextColumn);
   }

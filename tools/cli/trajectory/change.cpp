@@ -100,9 +100,14 @@ class Mover {
   Box box_{};
 };
 
+struct Changed {
+  std::vector<Pose> poses;
+  PoseLabels labels;
+};
+
 struct Change {
-  std::function<std::vector<Pose>(const std::vector<Pose>& poses, const Mover& mover,
-                                  double max_motion, Progress& progress)>
+  std::function<Changed(const TrajectoryFile& path, const Mover& mover, double max_motion,
+                        Progress& progress)>
       make;
   const char* consequence;  ///< what missing poses mean for the output
   const char* how;          ///< see made_words()
@@ -120,69 +125,55 @@ std::string made_words(const std::string& how, const std::filesystem::path& give
   return fmt::format(fmt::runtime(how), name, poses, now);
 }
 
-std::vector<Pose> resample(const std::vector<Pose>& poses, const Mover& mover, double max_motion,
-                           Progress& progress) {
-  std::vector<Pose> path = resample_trajectory(poses, mover.box(), max_motion, progress);
+/// The labels of a path to which poses were added. Those get values between those of their
+/// neighbours, linear in the way along `after`.
+PoseLabels labels_between(const TrajectoryFile& before, const std::vector<Pose>& after) {
+  const std::vector<double> way = chainage_of(after);
+  std::vector<std::size_t> given;  // where the given poses are among those of `after`
+  std::vector<double> way_of_given;
+  for (std::size_t k = 0; k < after.size() && given.size() < before.poses.size(); ++k) {
+    if (after[k] != before.poses[given.size()]) continue;
+    given.push_back(k);
+    way_of_given.push_back(way[k]);
+  }
+  return made_labels(before.labels, [&](const std::vector<double>& values) {
+    std::vector<double> out;
+    for (const double at : way) out.push_back(value_at(way_of_given, values, at));
+    for (std::size_t i = 0; i < given.size(); ++i) out[given[i]] = values[i];
+    return out;
+  });
+}
+
+Changed resample(const TrajectoryFile& path, const Mover& mover, double max_motion,
+                 Progress& progress) {
+  std::vector<Pose> poses = resample_trajectory(path.poses, mover.box(), max_motion, progress);
   // A body may turn where the path's own pose goes straight on, so that steps that are small
   // enough for the path are not for the body.
   constexpr double kRounding = 1e-9, kLess = 0.98;
   constexpr int kMostTries = 16;
   double step = max_motion;
   for (int i = 0; mover.is_vehicle() && i < kMostTries; ++i) {
-    const double largest = greatest_of(mover.motions(path));
+    const double largest = greatest_of(mover.motions(poses));
     if (largest <= max_motion * (1 + kRounding)) break;
     step *= kLess * max_motion / largest;
-    path = resample_trajectory(poses, mover.box(), step, progress);
+    poses = resample_trajectory(path.poses, mover.box(), step, progress);
   }
-  return path;
+  PoseLabels labels = labels_between(path, poses);
+  return {std::move(poses), std::move(labels)};
 }
 
-std::vector<Pose> thin(const std::vector<Pose>& poses, const Mover& mover, double max_motion,
-                       Progress&) {
+Changed thin(const TrajectoryFile& path, const Mover& mover, double max_motion, Progress&) {
   if (mover.is_vehicle()) {
     throw InputError("is thinned for one model, and a vehicle of several bodies is given");
   }
-  std::vector<Pose> kept;
-  for (const std::size_t i : thin_trajectory(poses, mover.box(), max_motion)) {
-    kept.push_back(poses[i]);
+  Changed kept;
+  std::vector<double> places;
+  for (const std::size_t i : thin_trajectory(path.poses, mover.box(), max_motion)) {
+    kept.poses.push_back(path.poses[i]);
+    places.push_back(static_cast<double>(i));
   }
+  kept.labels = labels_at(places, path.labels);
   return kept;
-}
-
-/// The values of a label of each pose of `after`; see labels_along(). way: along `after`.
-std::vector<double> values_along(const std::vector<Pose>& before, const std::vector<double>& values,
-                                 const std::vector<Pose>& after, const std::vector<double>& way) {
-  // The poses that both have: where they are along `after`, and their values.
-  std::vector<double> known_at, known;
-  std::vector<bool> is_known(after.size());
-  for (std::size_t i = 0, k = 0; i < before.size() && k < after.size();) {
-    if (before[i] == after[k]) {
-      known_at.push_back(way[k]);
-      known.push_back(values[i++]);
-      is_known[k++] = true;
-    } else if (after.size() > before.size()) {
-      ++k;
-    } else {
-      ++i;
-    }
-  }
-  std::vector<double> out;
-  std::size_t met = 0;
-  for (std::size_t k = 0; k < after.size(); ++k) {
-    out.push_back(is_known[k] ? known[met++] : value_at(known_at, known, way[k]));
-  }
-  return out;
-}
-
-/// The labels of a changed trajectory. The poses of one of the two are all among those of the
-/// other, in the same order. Those of `after` that `before` lacks get values between those of their
-/// neighbours, linear in the way along `after`.
-PoseLabels labels_along(const std::vector<Pose>& before, const PoseLabels& labels,
-                        const std::vector<Pose>& after) {
-  const std::vector<double> way = chainage_of(after);
-  return made_labels(labels, [&](const std::vector<double>& values) {
-    return values_along(before, values, after, way);
-  });
 }
 
 /// Refuses an output that is an input, and takes the unit of the store.
@@ -216,9 +207,8 @@ void write_changed(ChangeCommand& options, const Change& change) {
                                options.unit, change.consequence));
     }
     ConsoleProgress progress;
-    const std::vector<Pose> after =
-        on_path(options, [&] { return change.make(before, mover, options.max_motion, progress); });
-    PoseLabels labels = labels_along(before, path.labels, after);
+    auto [after, labels] =
+        on_path(options, [&] { return change.make(path, mover, options.max_motion, progress); });
     labels.made_by = made_words(change.how, options.input, before.size(), after.size());
     write_poses(after, labels, path, file);
     const double motion_after = greatest_of(mover.motions(after));
