@@ -2,10 +2,8 @@
 #define XXH_INLINE_ALL
 #include "scene/scene.hpp"
 
-#include <sys/wait.h>
 #include <xxhash.h>
 
-#include <cstdlib>
 #include <cstring>
 
 #include "clearway/error.hpp"
@@ -14,7 +12,7 @@
 #include "core/util/progress.hpp"
 #include "scene/write.hpp"
 #include "support/catch.hpp"
-#include "tools/cli/support/program.hpp"
+#include "support/scratch_folder.hpp"
 
 using namespace clearway;
 using namespace clearway::scene;
@@ -122,34 +120,4 @@ TEST_CASE("a scene without points, model or poses is wrong usage, a full disk a 
   const File full = File::create("/dev/full");
   NoProgress progress;
   CHECK_THROWS_AS(write_environment(*made, 1, full, 2, progress), ResourceError);
-}
-
-TEST_CASE("the command writes four files, the same when piped, and none over another or by half") {
-  const ScratchFolder folder;
-  const std::string sizes = " --points 30000 --model-points 100 --poses 10 ";
-  const auto scene = [&](const std::string& arguments, int exit_code) {
-    check_outcome(run_program(folder, "scene " + arguments), exit_code);
-  };
-  scene("tunnel -o a" + sizes, 0);
-  const Outcome piped = run_program(folder, "scene tunnel -o b --environment -" + sizes);
-  CHECK(piped.out == bytes_of(folder / "a/environment.las"));
-  CHECK_FALSE(std::filesystem::exists(folder / "b/environment.las"));
-  for (const std::string name : {"model.ply", "trajectory.txt", "origins.csv"}) {
-    CHECK(bytes_of(folder / ("a/" + name)) == bytes_of(folder / ("b/" + name)));
-  }
-  const std::string other = "tunnel --seed 2 -o a" + sizes;
-  scene(other, 2);
-  CHECK(piped.out == bytes_of(folder / "a/environment.las"));
-  scene(other + "--force", 0);
-  CHECK(piped.out != bytes_of(folder / "a/environment.las"));
-  const std::string to_full = quoted(CLEARWAY_PROGRAM) + " scene hall -o " + quoted(folder / "c") +
-                              sizes + "--environment - >/dev/full 2>/dev/null";
-  CHECK(WEXITSTATUS(std::system(to_full.c_str())) == 4);
-  CHECK(std::filesystem::is_empty(folder / "c"));
-  scene("hall -o /dev/null/folder" + sizes, 4);
-  for (const std::string wrong : {"cathedral -o d", "hall -o d --points 0", "hall -o d --points -5",
-                                  "hall -o d --environment file.las", "hall"}) {
-    scene(wrong, 2);
-  }
-  CHECK_FALSE(std::filesystem::exists(folder / "d"));
 }
