@@ -323,10 +323,14 @@ class Grouping {
   /// Groups the points of some layers with each other, and with those of the layers before them
   /// that can hold neighbours.
   void group(std::uint64_t first, std::uint64_t end) {
-    const std::uint64_t away = neighbourhood_.cells_away()[static_cast<std::size_t>(axis_)];
-    const auto takes = [this, from = first - std::min(first, away), end](std::size_t i) {
-      const std::uint64_t at = layer_at(points_[i].q[axis_], axis_);
-      return at >= from && at < end && (only_ == nullptr || (*only_)[i]);
+    const auto k = static_cast<std::size_t>(axis_);
+    const std::uint64_t away = std::min<std::uint64_t>(first, neighbourhood_.cells_away()[k]);
+    const auto begin_of = [&](std::uint64_t layer) {
+      return origin_.q[k] + static_cast<std::int64_t>(layer * neighbourhood_.cell()[k]);
+    };
+    const auto takes = [this, k, from = begin_of(first - away), to = begin_of(end)](std::size_t i) {
+      const std::int64_t q = points_[i].q[k];
+      return q >= from && q < to && (only_ == nullptr || (*only_)[i]);
     };
     std::size_t count = 0;
     for (std::size_t i = 0; i < points_.size(); ++i) count += takes(i) ? 1 : 0;
