@@ -1,5 +1,3 @@
-#include "report/on_site.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -7,7 +5,6 @@
 #include <numbers>
 #include <optional>
 #include <span>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,6 +12,7 @@
 #include "core/describe/labels.hpp"
 #include "core/geometry/axes.hpp"
 #include "core/trajectory/chainage.hpp"
+#include "report/report_facts.hpp"
 
 namespace clearway {
 namespace {
@@ -89,15 +87,11 @@ struct Bend {
 };
 
 double radius_through(const Pose& a, const Pose& b, const Pose& c) {
-  const auto way = [](const Pose& from, const Pose& to) {
-    return std::pair(to.translation[0] - from.translation[0],
-                     to.translation[1] - from.translation[1]);
-  };
-  const auto [abx, aby] = way(a, b);
-  const auto [bcx, bcy] = way(b, c);
-  const auto [acx, acy] = way(a, c);
-  const double doubled_area = std::abs(abx * bcy - aby * bcx);
-  return std::hypot(abx, aby) * std::hypot(bcx, bcy) * std::hypot(acx, acy) / (2 * doubled_area);
+  const Vec3 ab = b.position() - a.position(), bc = c.position() - b.position();
+  const Vec3 ac = c.position() - a.position();
+  const double doubled_area = std::abs(ab.x * bc.y - ab.y * bc.x);
+  return std::hypot(ab.x, ab.y) * std::hypot(bc.x, bc.y) * std::hypot(ac.x, ac.y) /
+         (2 * doubled_area);
 }
 
 /// The tightest bend, by places that are at least `arm` apart along the path. The noise of recorded
@@ -123,8 +117,8 @@ Json json_of_bend(const ReportFacts& facts, const ModelAxes& axes) {
   const double metre = 1 / facts.store.metres_per_unit();
   double longest = 0;
   for (const DrawnBody& body : facts.bodies) {
-    const Box box = turned_box(body.box, axes);
-    longest = std::max(longest, box.hi.x - box.lo.x);
+    const int line = line_of(axes.forward);
+    longest = std::max(longest, body.box.hi[line] - body.box.lo[line]);
   }
   const Bend bend = tightest_bend(facts.poses, std::max(metre, longest / 4));
   if (!(bend.radius < kStraight * metre)) return {};

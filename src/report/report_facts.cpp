@@ -32,7 +32,6 @@
 #include "io/store/store_metadata.hpp"
 #include "io/store/store_reader.hpp"
 #include "report/answer_words.hpp"
-#include "report/on_site.hpp"
 #include "report/shown_poses.hpp"
 
 namespace clearway {
@@ -142,7 +141,7 @@ Json json_of_query(const ReportFacts& facts) {
   const ResultHeader& header = facts.result.reader().header();
   Json out = Json::object();
   for_each_field(kQueryValues, [&](const auto& field) {
-    if (is_listed(field, header)) out[field.key] = fact_json(field.of(header));
+    if (is_listed(field, header)) out[field.key] = json_of_fact(field.of(header));
   });
   return out;
 }

@@ -68,6 +68,11 @@ std::uint64_t shown_cubes(const UnseenGroups& unseen, const UnseenGroup& group);
 /// there may be thousands, and the days on which they were made, null where their files do not say.
 Json json_of_scans(const StoreMetadata& store);
 
+/// What no file can prove and a person can compare on site: the sizes of the bodies and how they
+/// stand on the path, their axles, and where the path begins and ends, runs to, and bends most.
+/// docs/guide/report.md, "Check these on site".
+Json on_site(const ReportFacts& facts);
+
 /// The facts as one JSON object. docs/guide/report.md describes its keys.
 std::string json_of(const ReportFacts& facts);
 

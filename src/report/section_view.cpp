@@ -291,6 +291,8 @@ bool SectionView::has_cells_of_bins() const {
          kMostCellBits;
 }
 
+// The library of JSON finds these by their arguments, so they stand in the namespace of these.
+
 static void to_json(Json& json, const SectionWitness& witness) {
   json = {{"source", witness.source},
           {"xyz", witness.xyz},

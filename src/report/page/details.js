@@ -44,7 +44,7 @@ function conflictFacts(conflict) {
     conflict.remedy && ["Remedy", conflict.remedy],
     page.facts.shifts && ["Frees it", freedWords(conflict)],
     conflict.classified && ["Classes", conflict.classified],
-    ["Points", `${count(conflict.points)} in ${sizeOf(conflict).map((s) => s.toFixed(2)).join(" × ")} ${unitSymbol}`],
+    ["Points", `${count(conflict.points)} in ${sizeCell(conflict)} ${unitSymbol}`],
     ["Poses", `${count(conflict.first_pose)} to ${count(conflict.last_pose)}${nearestPoseWords(conflict)}`]);
 }
 

@@ -63,8 +63,9 @@ function frontWords() {
 function buildFront() {
   const { front } = seenFacts(), { cell, columns, rows, left, up } = front;
   if (!(columns > 0)) return;
-  const chart = Object.assign(new Chart(46), { from: left + columns * cell, to: left, low: up, high: up + rows * cell, title: "" });
-  const side = Math.min(chart.wide / columns, 780 / rows), aside = (chart.wide - side * columns) / 2;
+  const chart = Object.assign(new Chart(46), { from: left + columns * cell, to: left, low: up, high: up + rows * cell, title: "",
+                                               width: clamp(byId("unseen-front").clientWidth || 1000, 520, 1000) });
+  const side = Math.min(chart.wide / columns, 0.78 * chart.width / rows), aside = (chart.wide - side * columns) / 2;
   Object.assign(chart, { left: chart.left + aside, right: chart.right + aside, height: chart.top + side * rows + chart.bottom });
   const words = (x, y, kind, text) => make("text", { x, y, class: `${kind} strong` }, text), below = chart.base + 40;
   const picture = chart.svg({ id: "front-picture", role: "img", "aria-label": `The vehicle's cross-section, looking forward. ${frontWords()}` }, [

@@ -5,9 +5,6 @@ const kMostOnSite = 8;
 
 const bearingWords = (degrees) => `${Math.round(degrees) % 360}°`;
 
-/** "8.00 × 2.50 × 3.40 m", as length, width and height. */
-const sizeWords = ({ lo, hi }) => `${hi.map((h, k) => (h - lo[k]).toFixed(2)).join(" × ")} ${unitSymbol}`;
-
 /** "3.10 m behind the path's pose", of a place on the x axis. */
 const aheadOf = (x, what) => x === 0 ? `at ${what}` : `${station(Math.abs(x))} ${x < 0 ? "behind" : "ahead of"} ${what}`;
 
@@ -34,7 +31,7 @@ function mountWords({ at, pivots, hitch, axle, coupled_at: coupled, towed_by: to
 
 function bodyOnSite(body, several) {
   const mount = mountWords(body);
-  return make(several ? "li" : "div", {}, several && `${body.name}: `, make("strong", {}, sizeWords(body)),
+  return make(several ? "li" : "div", {}, several && `${body.name}: `, make("strong", {}, `${sizeCell(body)} ${unitSymbol}`),
               !several && " (length × width × height)", mount && `, ${mount}`,
               make("div", { class: "note" }, reachWords(body)));
 }

@@ -4,6 +4,8 @@ const table = { title: "", down: true, first: 0, rows: 100, side: "", from: "", 
                 least: "", status: "" };
 
 const sizeOf = (c) => c.hi.map((h, k) => h - c.lo[k]);
+/** "8.00 × 2.50 × 3.40" */
+const sizeCell = (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × ");
 
 /** Whether the error budget leaves open if the conflict is one. */
 const isPossible = (conflict) => conflict.class === "possible";
@@ -53,7 +55,7 @@ function tableColumns() {
     page.facts.shifts && ["Frees it", freedRank, freedCell, kLength],
     ["Points", (c) => c.points, (c) => count(c.points), kMost],
     deep && ["Inside", (c) => c.points_inside ?? 0, (c) => count(c.points_inside ?? 0), kMost],
-    ["Size", (c) => Math.max(...sizeOf(c)), (c) => sizeOf(c).map((s) => s.toFixed(2)).join(" × "), kMostLength],
+    ["Size", (c) => Math.max(...sizeOf(c)), sizeCell, kMostLength],
     ["Pose", poseOf, (c) => String(poseOf(c))],
     ["Place x, y, z", (c) => placeOfTable(c)[0], (c) => coordinates(placeOfTable(c)), kMostLength],
   ].filter(Boolean).map(([title, value, cell, how = {}]) =>
@@ -64,16 +66,10 @@ function tableColumns() {
 const placeOfTable = (conflict) => conflict.nearest_point ?? conflict.centroid;
 
 /** From and to, or one of them where they are the same. */
-function chainageCell(conflict) {
-  const [from, to] = [conflict.chainage_from, conflict.chainage_to].map((c) => c.toFixed(2));
-  return from === to ? from : `${from} – ${to}`;
-}
-
+const span = (from, to, between = " – ") => from === to ? from : from + between + to;
+const chainageCell = ({ chainage_from: from, chainage_to: to }) => span(from.toFixed(2), to.toFixed(2));
 /** The stations of a conflict or a stretch, which go down where the path runs against them. */
-function stationsCell({ station_from: from, station_to: to }) {
-  const words = [from, to].map((s) => fixed(s, 2));
-  return words[0] === words[1] ? words[0] : `${words[0]} – ${words[1]}`;
-}
+const stationsCell = ({ station_from: from, station_to: to }) => span(fixed(from, 2), fixed(to, 2));
 
 const stationCell = (c) => c.obstacle_chainage === null ? "" : c.obstacle_chainage.toFixed(2);
 

@@ -37,17 +37,13 @@ function scannedSentence() {
 }
 
 /** Where a group lies, seen from the path: ranges along an axis of its box there. */
-function rangeCell(group, axis) {
-  if (!group.seen) return "";
-  const [from, to] = [group.seen.lo[axis], group.seen.hi[axis]].map(signed);
-  return from === to ? from : `${from} to ${to}`;
-}
+const rangeCell = ({ seen }, axis) => seen ? span(signed(seen.lo[axis]), signed(seen.hi[axis]), " to ") : "";
 
 function groupColumns() {
   return columnsOf([
     ["No.", groupName],
     ["Cubes", (g) => count(g.cubes), "number"],
-    [`Size (${unitSymbol})`, (g) => sizeOf(g).map((s) => s.toFixed(2)).join(" × "), "number"],
+    [`Size (${unitSymbol})`, sizeCell, "number"],
     [`Chainage (${unitSymbol})`, chainageCell, "number"],
     ["Side", (g) => kSides[g.side]],
     [`Lateral (${unitSymbol})`, (g) => rangeCell(g, 1), "number"],
