@@ -148,44 +148,39 @@ std::string comparison_json(const Comparison& c, const std::string& a, const std
   return indented_text(out, -1);
 }
 
-struct CompareOptions {
-  bool conflicts = false;
-  ConflictComparison of;  ///< the results, and what else is compared of their conflicts
-};
-
 /// Returns the exit code.
-int run_compare(CompareOptions& options) {
+int run_compare(ConflictComparison& options) {
   if (options.conflicts) {
     int code = kDone;
-    run_stoppable(options.of.b.result, kStartsAgain, [&] { code = compare_conflicts(options.of); });
+    run_stoppable(options.b.result, kStartsAgain, [&] { code = compare_conflicts(options); });
     return code;
   }
-  const ResultReader a(options.of.result), b(options.of.b.result);
+  const ResultReader a(options.result), b(options.b.result);
   repeat_warnings(a, a.name() + ": ");
   repeat_warnings(b, b.name() + ": ");
-  const Comparison comparison = compare_results(a, b, options.of.show);
-  print(options.of.json ? comparison_json(comparison, a.name(), b.name())
-                        : comparison_text(comparison, a.name(), b.name()));
+  const Comparison comparison = compare_results(a, b, options.show);
+  print(options.json ? comparison_json(comparison, a.name(), b.name())
+                     : comparison_text(comparison, a.name(), b.name()));
   return comparison.equal() ? kDone : kDiffers;
 }
 
 }  // namespace
 
 void add_compare(CLI::App& program, int& exit_code) {
-  auto options = std::make_shared<CompareOptions>();
-  options->of.show = 10;
+  auto options = std::make_shared<ConflictComparison>();
+  options->show = 10;
   CLI::App* command =
       program.add_subcommand("compare", "Say how the colliding points of two results differ");
-  add_file(*command, "A", options->of.result, "Result of clearway run")->required();
-  add_file(*command, "B", options->of.b.result, "Another result about the same environment")
+  add_file(*command, "A", options->result, "Result of clearway run")->required();
+  add_file(*command, "B", options->b.result, "Another result about the same environment")
       ->required();
-  add_count_option(*command, "--show", options->of.show, 0, 1'000'000'000,
+  add_count_option(*command, "--show", options->show, 0, 1'000'000'000,
                    "Print the first N differing points, or new and gone conflicts");
-  command->add_flag("--json", options->of.json, "Print one JSON object");
+  command->add_flag("--json", options->json, "Print one JSON object");
   CLI::Option* conflicts = command->add_flag(
       "--conflicts", options->conflicts,
       "Say instead which conflicts are new, worse, gone and the same; of any environments");
-  add_conflict_comparison(*command, options->of, conflicts);
+  add_conflict_comparison(*command, *options, conflicts);
   command->footer(
       "Prints how many colliding points are only in A, only in B and in both. Where both "
       "results\n"
@@ -205,11 +200,10 @@ void add_compare(CLI::App& program, int& exit_code) {
       "Exit code 3: a file is not a result, or the results are about different environments.\n"
       "Example: clearway compare kdtree.h5 sweep.h5");
   command->callback([options, command, &exit_code] {
-    const ConflictComparison& of = options->of;
+    const SearchedFiles &a = *options, &b = options->b;
     advising_to_run_again(
         *command,
-        {{of.result, of.trajectory},
-         {of.b.result, of.b.trajectory.empty() ? of.trajectory : of.b.trajectory}},
+        {{a.result, a.trajectory}, {b.result, b.trajectory.empty() ? a.trajectory : b.trajectory}},
         [&] { exit_code = run_compare(*options); });
   });
 }

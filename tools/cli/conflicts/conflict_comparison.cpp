@@ -319,13 +319,15 @@ class ComparedConflicts {
 /// A clause for a result that could not find anything; empty for others.
 std::string undecided_text(const ComparedSide& side, const char* name) {
   const std::vector<std::string> doubts = side.answer.doubts();
-  if (!side.undecided()) return "";
   if (side.answer.verdict() != Verdict::kUndecided) {
-    return fmt::format("; {} is not known as a whole, because its run warned of {}", name,
-                       fmt::join(doubts, ", "));
+    return doubts.empty()
+               ? ""
+               : fmt::format("; {} is not known as a whole, because its run warned of {}", name,
+                             fmt::join(doubts, ", "));
   }
-  if (!doubts.empty())
+  if (!doubts.empty()) {
     return fmt::format("; {} is undecided, because {}", name, doubt_words(doubts));
+  }
   std::vector<std::string> reasons;
   for (const Reason reason : side.answer.reasons()) reasons.emplace_back(name_of(reason));
   return fmt::format("; {} is undecided ({})", name, fmt::join(reasons, ", "));

@@ -8,8 +8,9 @@
 
 namespace clearway::tool {
 
-/// The options of `clearway compare --conflicts`, with the files of a.
+/// The options of `clearway compare`, with the files of a.
 struct ConflictComparison : ConflictCommand {
+  bool conflicts = false;  ///< whether conflicts are compared, and not points
   SearchedFiles b;         ///< what is not given is that of a
   double worse_by = 0.02;  ///< metres by which a conflict must come nearer, or deeper, to be worse
   bool allow_other_question = false;
