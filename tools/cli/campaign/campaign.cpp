@@ -15,7 +15,6 @@
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
 #include "cli/campaign/commands.hpp"
-#include "cli/campaign/task_queue.hpp"
 #include "cli/commands.hpp"
 #include "cli/steps.hpp"
 #include "cli/support/console.hpp"

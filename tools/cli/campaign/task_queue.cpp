@@ -1,5 +1,3 @@
-#include "cli/campaign/task_queue.hpp"
-
 #include <fcntl.h>
 #include <fmt/chrono.h>
 #include <signal.h>
@@ -30,6 +28,7 @@
 #include "campaign/outcome.hpp"
 #include "campaign/task_state.hpp"
 #include "clearway/error.hpp"
+#include "cli/campaign/commands.hpp"
 #include "cli/clearway_program.hpp"
 #include "cli/support/inherited_store.hpp"
 #include "cli/support/program.hpp"

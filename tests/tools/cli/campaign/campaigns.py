@@ -1,6 +1,5 @@
 """A small hall and campaigns in it, for the tests of `clearway campaign`."""
 
-import html.parser
 import json
 import pathlib
 import re
@@ -51,24 +50,6 @@ def tasks_of(place, name):
     return [json.loads(line.rstrip(",")) for line in (place / name / "plan.json").read_text().splitlines()[1:-1]]
 
 
-class OpenElements(html.parser.HTMLParser):
-    """What is wrong with the ends of a page's elements."""
-
-    def __init__(self, text):
-        super().__init__()
-        self.open, self.wrong = [], []
-        self.feed(text)
-        self.wrong += self.open
-
-    def handle_starttag(self, tag, attrs):
-        if tag not in ("meta", "br"):
-            self.open.append(tag)
-
-    def handle_endtag(self, tag):
-        if not self.open or self.open.pop() != tag:
-            self.wrong.append(tag)
-
-
 class Campaigns(Scratch):
     base, browser = CAMPAIGN, None
 
@@ -96,10 +77,7 @@ class Campaigns(Scratch):
         return self.place.ask(f"campaign status {name} --{which}").stdout.strip()
 
     def report(self, name):
-        facts = self.place.json(f"campaign report {name} --force")
-        text = (self.place / name / "index.html").read_text()
-        self.assertEqual([OpenElements(text).wrong, text.count("<title>")], [[], 1])
-        return facts
+        return self.place.json(f"campaign report {name} --force")
 
     def shown(self, name):
         """The elements that a browser shows of the page; nothing where chromium is not installed."""
