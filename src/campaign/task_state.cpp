@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <span>
 #include <system_error>
@@ -135,9 +136,7 @@ std::optional<TaskState> read_state(const fs::path& folder) {
     keep_facts(values, state);
     state.facts = json.value("facts", Json());
     return state;
-  } catch (const JsonError&) {
-    return std::nullopt;
-  } catch (const Error&) {
+  } catch (const std::exception&) {
     return std::nullopt;
   }
 }
@@ -153,15 +152,12 @@ namespace {
 /// Reads what a command printed into its file as JSON, and takes facts from it.
 template <typename Take>
 void take_printed(const fs::path& file, const Take& take) {
-  std::string damage;
+  const std::string text = text_of_file(file);
   try {
-    return take(parse_json(text_of_file(file)));
-  } catch (const JsonError& error) {
-    damage = error.what();
-  } catch (const Json::exception& error) {
-    damage = error.what();
+    take(parse_json(text));
+  } catch (const std::exception& error) {
+    throw ResourceError(file.string() + ": is not what the command printed: " + error.what());
   }
-  throw ResourceError(file.string() + ": is not what the command printed: " + damage);
 }
 
 Json place_of(const Json& place) {

@@ -81,10 +81,9 @@ std::string shift_text(const StretchShift& row, const ShiftTable& table, const s
   const std::string text =
       format_length(std::abs(*row.shift)) + " " + unit + " to the " + side_of(row) + " frees it";
   if (row.warned_of.empty()) return text;
-  std::string codes;
-  for (const std::string& code : row.warned_of) codes += (codes.empty() ? "" : ", ") + code;
-  return text + ", but its place causes the " +
-         (row.warned_of.size() == 1 ? "warning " : "warnings ") + codes;
+  return fmt::format("{}, but its place causes the {} {}", text,
+                     row.warned_of.size() == 1 ? "warning" : "warnings",
+                     fmt::join(row.warned_of, ", "));
 }
 
 /// A line about the groups that are too small to be conflicts; none where there are none.

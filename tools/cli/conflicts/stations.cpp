@@ -56,14 +56,14 @@ std::string least_cell(const StationRow& row) {
 /// Why a row is not clear, in a few words.
 std::string why(const StationRow& row) {
   if (row.verdict != Verdict::kUndecided) return "";
-  std::string out;
+  std::vector<std::string> words;
   for (const Reason reason : row.reasons) {
-    if (reason == Reason::kQuestionInDoubt) continue;  // the codes of the doubts say more
-    out += (out.empty() ? " (" : ", ") + std::string(name_of(reason));
+    // The codes of the doubts say more.
+    if (reason != Reason::kQuestionInDoubt) words.emplace_back(name_of(reason));
   }
-  for (const std::string& code : row.doubts) out += (out.empty() ? " (" : ", ") + code;
-  if (!row.is_searched) out += (out.empty() ? " (" : ", ") + std::string("not searched");
-  return out + ")";
+  words.insert(words.end(), row.doubts.begin(), row.doubts.end());
+  if (!row.is_searched) words.emplace_back("not searched");
+  return fmt::format(" ({})", fmt::join(words, ", "));
 }
 
 /// The greatest overthrow of all bodies.
