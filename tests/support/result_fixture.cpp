@@ -101,8 +101,4 @@ void write_result(const std::filesystem::path& path, const ResultHeader& header,
   writer.finish(findings);
 }
 
-bool same_rows(const Collisions& a, const Collisions& b) {
-  return a.source == b.source && a.xyz == b.xyz && a.first_pose == b.first_pose;
-}
-
 }  // namespace clearway::test

@@ -60,6 +60,4 @@ bool same_table(const Rows& a, const Rows& b) {
   return same;
 }
 
-bool same_rows(const Collisions& a, const Collisions& b);
-
 }  // namespace clearway::test

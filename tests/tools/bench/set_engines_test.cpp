@@ -4,7 +4,7 @@
 #include "io/result/result.hpp"
 #include "support/catch.hpp"
 #include "support/result_fixture.hpp"
-#include "tools/cli/support/hall.hpp"
+#include "tools/cli/support/program.hpp"
 
 using namespace clearway;
 using namespace clearway::test;
@@ -12,12 +12,14 @@ using nlohmann::json;
 
 namespace {
 
-struct Searches : Work {
+/// A hall and searches of it, whose result is out.h5.
+struct Searches : Workplace {
+  Searches() {
+    succeed("scene hall --points 30000 --model-points 300 --poses 150 -o .");
+    succeed("convert environment.las -o site.h5");
+  }
   Outcome search(const std::string& options) const {
-    return run_program_at(CLEARWAY_BENCH_PROGRAM, folder,
-                          "search --env " + hall / "site.h5" + " --model " + hall / "model.ply" +
-                              " --trajectory " + hall / "trajectory.txt" + " --radius 0.1 -o " +
-                              path("out.h5") + " " + options);
+    return run_program_at(CLEARWAY_BENCH_PROGRAM, folder, "search" + asked + options);
   }
   std::vector<std::uint64_t> found(const std::string& options) const {
     const Outcome done = search(options);
@@ -25,13 +27,16 @@ struct Searches : Work {
     require_success(done);
     return read_rows(ResultReader(folder / "out.h5")).source;
   }
+
+  const std::string asked =
+      " --env site.h5 --model model.ply --trajectory trajectory.txt --radius 0.1 -o out.h5 ";
 };
 
 }  // namespace
 
 TEST_CASE("neither the field's voxel nor the grid's cell changes what is found") {
   const Searches work;
-  require_success(work.run_hall(work.hall / "site.h5", "out.h5"));
+  work.succeed("run" + work.asked);
   const auto expected = read_rows(ResultReader(work.folder / "out.h5")).source;
   for (const char* options :
        {"--field-voxel 0.02", "--field-voxel 0.5", "--field-voxel 1e9", "--engine grid",
