@@ -301,75 +301,66 @@ ordered_json describe(const std::filesystem::path& file) {
   }
 }
 
-/// A clause that says which source indices come from a file.
-std::string indices_text(const ordered_json& source) {
-  if (source["points"].is_null()) return "";
-  const auto first = source["first_source"].get<std::uint64_t>();
-  const auto points = source["points"].get<std::uint64_t>();
-  if (points == 0) return ", no points";
-  return fmt::format(", source indices {} to {}", first, first + points - 1);
-}
-
+/// The description in lines. Lists have a line for each entry.
 std::string text_of(const ordered_json& description) {
+  const auto number = [](const ordered_json& of) { return of.get<std::uint64_t>(); };
+  const auto words = [](const ordered_json& of) { return of.get<std::string>(); };
+  const auto points = [&](const ordered_json& of) { return counted(number(of), "point"); };
   std::size_t width = 0;
   for (const auto& [key, value] : description.items()) width = std::max(width, key.size());
   std::string text;
+  const auto line = [&](const std::string& name, const std::string& what) {
+    text += fmt::format("{:<{}}  {}\n", name, width, what);
+  };
   for (const auto& [key, value] : description.items()) {
     if (key == "classes" && value.is_array()) {
       for (const auto& one : value) {
-        const auto name = one["name"].get<std::string>();
-        text += fmt::format("{:<{}}  {}{}: {}\n", "class", width, one["class"].get<unsigned>(),
-                            name.empty() ? "" : " (" + name + ")",
-                            counted(one["points"].get<std::uint64_t>(), "point"));
+        const std::string name = words(one["name"]);
+        line("class", std::to_string(number(one["class"])) +
+                          (name.empty() ? "" : " (" + name + ")") + ": " + points(one["points"]));
       }
     } else if (key == "origins" && value.is_object()) {
-      text += fmt::format("{:<{}}  {} distinct; {} without\n", key, width,
-                          format_count(value["distinct"].get<std::uint64_t>()),
-                          counted(value["points_without"].get<std::uint64_t>(), "point"));
+      line(key, format_count(number(value["distinct"])) + " distinct; " +
+                    points(value["points_without"]) + " without");
       for (const auto& one : value["rest_on"]) {
-        text += fmt::format("{:<{}}  {}: {}\n", "origins", width, one["what"].get<std::string>(),
-                            counted(one["points"].get<std::uint64_t>(), "point"));
+        line(key, words(one["what"]) + ": " + points(one["points"]));
       }
     } else if (key == "withheld" && value.is_object()) {
-      text +=
-          fmt::format("{:<{}}  {}\n", key, width,
-                      counted(value["points"].get<std::uint64_t>(), "point") +
-                          (value["kept"].get<bool>()
-                               ? ", kept"
-                               : ", left out, in " + counted(value["cubes"].get<std::uint64_t>(),
-                                                             "cube of 1 m", "cubes of 1 m")));
+      const std::string cubes = counted(number(value["cubes"]), "cube of 1 m", "cubes of 1 m");
+      line(key, points(value["points"]) +
+                    (value["kept"].get<bool>() ? ", kept" : ", left out, in " + cubes));
     } else if (key == "near" && value.is_object()) {
-      text += fmt::format("{:<{}}  within {} of a path of {}; {} left out", key, width,
-                          format_number(value["within"].get<double>()),
-                          counted(value["path_poses"].get<std::uint64_t>(), "pose"),
-                          counted(value["points_left_out"].get<std::uint64_t>(), "point"));
-      if (const auto unread = value["points_unread"].get<std::uint64_t>(); unread > 0) {
-        text += fmt::format(", {} of them not read ({})", format_count(unread),
-                            format_size(value["bytes_unread"].get<std::uint64_t>()));
+      std::string what = "within " + format_number(value["within"].get<double>()) +
+                         " of a path of " + counted(number(value["path_poses"]), "pose") + "; " +
+                         points(value["points_left_out"]) + " left out";
+      if (const auto unread = number(value["points_unread"]); unread > 0) {
+        what += fmt::format(", {} of them not read ({})", format_count(unread),
+                            format_size(number(value["bytes_unread"])));
       }
-      if (const auto files = value["files_passed_over"].get<std::uint64_t>(); files > 0) {
-        text += "; " + counted(files, "file") + " passed over";
+      if (const auto files = number(value["files_passed_over"]); files > 0) {
+        what += "; " + counted(files, "file") + " passed over";
       }
-      text += "\n";
+      line(key, what);
     } else if (key == "flags") {
-      for (const auto& [flag, points] : value.items()) {
-        text += fmt::format("{:<{}}  {}: {}\n", "flag", width, flag,
-                            counted(points.get<std::uint64_t>(), "point"));
-      }
+      for (const auto& [flag, count] : value.items()) line("flag", flag + ": " + points(count));
     } else if (key == "warnings") {
-      for (const auto& one : value) {
-        text += fmt::format("{:<{}}  {}: {}\n", "warning", width, one["code"].get<std::string>(),
-                            one["message"].get<std::string>());
-      }
+      for (const auto& one : value)
+        line("warning", words(one["code"]) + ": " + words(one["message"]));
     } else if (key == "sources") {
-      for (const auto& source : value) {
-        text += fmt::format("{:<{}}  {} ({} bytes, xxh64 {}){}\n", "source", width,
-                            source["name"].get<std::string>(), source["bytes"].get<std::uint64_t>(),
-                            source["xxh64"].get<std::string>(), indices_text(source));
+      for (const auto& one : value) {
+        std::string what = fmt::format("{} ({} bytes, xxh64 {})", words(one["name"]),
+                                       number(one["bytes"]), words(one["xxh64"]));
+        if (one["points"] == 0) {
+          what += ", no points";
+        } else if (!one["points"].is_null()) {
+          const std::uint64_t first = number(one["first_source"]);
+          what +=
+              fmt::format(", source indices {} to {}", first, first + number(one["points"]) - 1);
+        }
+        line("source", what);
       }
     } else {
-      text += fmt::format("{:<{}}  {}\n", key, width,
-                          value.is_string() ? value.get<std::string>() : value.dump());
+      line(key, value.is_string() ? words(value) : value.dump());
     }
   }
   return text;
