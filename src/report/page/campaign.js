@@ -74,7 +74,8 @@ function addLists() {
   addList("Failed", [["task", ({ task }) => String(task), "number"], ["run", (run) => linked(run, run.name)],
                      ["what happened", ({ details }) => details, "text"]], runs.filter(({ outcome }) => outcome === "failed"));
   if (words.unfinished === "") return;
-  addPart("Not done", make("p", {}, `Tasks ${words.unfinished}. `, make("code", {}, "clearway campaign run DIR --all"), " goes on with them."),
+  addPart("Not done",
+          make("p", {}, `Tasks ${words.unfinished}. `, make("code", {}, "clearway campaign run DIR --all"), " goes on with them."),
           make("ul", {}, runs.filter(({ changed }) => changed).map(({ name, changed }) =>
               make("li", {}, `${name}: ${changed}, so its verdict would be of an earlier file`))));
 }

@@ -62,12 +62,13 @@ function buildPathPlan() {
     const [cx, cy] = at(obstacle.middle), same = isSame(obstacle);
     return make("g", { class: "mark", ...chosenBy(() => { location.hash = `row${obstacle.number}`; }) },
         make("title", {}, obstacle.what),
-        make("circle", { cx, cy, r: same ? 4 : 7, class: `status ${obstacle.kind}`, fill: "#fff", stroke: "currentColor", "stroke-width": 2 }),
+        make("circle", { cx, cy, r: same ? 4 : 7, class: `status ${obstacle.kind}`, fill: "#fff", stroke: "currentColor",
+                         "stroke-width": 2 }),
         !same && make("text", { x: cx + 9, y: cy - 7, class: "strong halo" }, String(obstacle.number)));
   });
   const bar = roundLength(wide / 4 / scale);
-  byId("plan-body").append(scrollBox("tall", make("svg", { viewBox: `0 0 ${wide} ${tall}`, role: "img",
-                                                           style: "min-width: 46rem", "aria-label": "The path from above, and the conflicts" },
+  byId("plan-body").append(scrollBox("tall", make("svg",
+      { viewBox: `0 0 ${wide} ${tall}`, role: "img", style: "min-width: 46rem", "aria-label": "The path from above, and the conflicts" },
       make("path", { class: "curve", d: `M${path.map((p) => at(p).map((v) => v.toFixed(1))).join("L")}` }), marks.reverse(),
       make("path", { class: "surface", d: `M16 ${tall - 14}h${bar * scale}` }),
       make("text", { x: 24 + bar * scale, y: tall - 10, class: "strong" }, shortLength(bar)))));
