@@ -1,22 +1,20 @@
-# Writes OUTPUT, a source that holds the pages. FRAME is their common HTML, into which the parts of a
-# page go, its styles and its scripts. CROSS_SECTION and what ends in PARTS are HTML; STYLES and what
-# ends in SCRIPTS are lists joined by "|", whose files are put together in this order.
+# Writes OUTPUT, a source that holds the pages. Each is the frame page.html of the folder PAGE, into
+# which the parts of the page go, its styles and its scripts, files of that folder in this order.
 # What stays in double braces is put in where a page is written.
-function(read_files variable files)
-  string(REPLACE "|" ";" files "${files}")
-  foreach(file ${files})
-    file(READ ${file} content)
+function(read_files variable ending)
+  foreach(name ${ARGN})
+    file(READ ${PAGE}/${name}.${ending} content)
     string(APPEND text "${content}")
   endforeach()
   set(${variable} "${text}" PARENT_SCOPE)
 endfunction()
 
-function(embed name answer parts scripts) # further styles
-  read_files(page "${FRAME}")
-  read_files(parts "${parts}")
-  read_files(route "${CROSS_SECTION}")
-  read_files(style "${STYLES}|${ARGN}")
-  read_files(script "${scripts}")
+function(embed name answer parts styles scripts)
+  read_files(page html page)
+  read_files(parts html ${parts})
+  read_files(route html cross_section)
+  read_files(style css style print ${styles})
+  read_files(script js ${scripts})
   foreach(place answer parts route style script)
     string(TOUPPER "{{${place}}}" there)
     string(REPLACE "${there}" "${${place}}" page "${page}")
@@ -29,10 +27,14 @@ set(source "#include \"report/page.hpp\"
 
 namespace clearway {
 ")
-embed(ReportPage Verdict "${REPORT_PARTS}" "${SCRIPTS}")
-embed(SectionPage Answer "${SECTION_PARTS}" "${SECTION_SCRIPTS}")
-embed(ComparisonPage Answer "${COMPARISON_PARTS}" "${COMPARISON_SCRIPTS}")
-embed(CampaignPage Answer "" "${CAMPAIGN_SCRIPTS}" "${CAMPAIGN_STYLE}")
+embed(ReportPage Verdict report_parts ""
+  "begin;columns;geometry;words;kit;painter;pictures;labels;symbols;chart;unsearched;unseen;front;\
+on_site;ledger;verdict;profile;pointer;plan;shifts;table;stations;section;section_map;details;webgl;\
+view;view_controls;print;main")
+embed(SectionPage Answer section_parts ""
+  "begin;columns;geometry;words;kit;symbols;chart;section;section_map;section_stops;section_page")
+embed(ComparisonPage Answer comparison_parts "" "begin;words;kit;labels;symbols;comparison")
+embed(CampaignPage Answer "" campaign "begin;words;kit;campaign")
 file(WRITE ${OUTPUT} "${source}
 }  // namespace clearway
 ")

@@ -1,5 +1,5 @@
 "use strict";
-// The files of this folder follow each other in one script, in the order of CMakeLists.txt.
+// The files of this folder follow each other in one script, in the order of cmake/pages.cmake.
 
 /** All that the page knows. Places are in metres from facts.page.lattice.origin. */
 const page = {
