@@ -57,6 +57,12 @@ if(CLEARWAY_FUZZ)
   add_compile_options(-fno-sanitize-recover=all)
 endif()
 
+# clearway_sources(VARIABLE): the sources in this folder and below, relative to it.
+function(clearway_sources variable)
+  file(GLOB_RECURSE sources RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} CONFIGURE_DEPENDS *.cpp *.cu)
+  set(${variable} ${sources} PARENT_SCOPE)
+endfunction()
+
 # clearway_unity(TARGET [FOLDER=OTHER...]): compiles the sources of each folder of the target as one
 # (CLEARWAY_UNITY), and those of FOLDER together with those of OTHER. A source with
 # SKIP_UNITY_BUILD_INCLUSION stays alone.
@@ -76,9 +82,11 @@ function(clearway_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${CLEARWAY_UNITY} UNITY_BUILD_MODE GROUP)
 endfunction()
 
-# clearway_add_library(NAME source...): a static library of src/ or tools/.
+# clearway_add_library(NAME [SOURCE...]): a static library of the sources in this folder and below,
+# and of further ones.
 function(clearway_add_library name)
-  add_library(${name} STATIC ${ARGN})
+  clearway_sources(sources)
+  add_library(${name} STATIC ${sources} ${ARGN})
   target_compile_features(${name} PUBLIC cxx_std_20)
   target_include_directories(${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
