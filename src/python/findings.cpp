@@ -165,7 +165,7 @@ void add_conflicts(py::module_& module) {
   auto found = add_class<GroupedConflicts>(
       module, "Conflicts",
       "The conflicts of a result: its colliding points, grouped place by place.",
-      kLedgerOfConflicts);
+      kFactsOf<Conflicts>, kLedgerOfConflicts);
   found
       .def_property_readonly(
           "conflict_of", member_array<&GroupedConflicts::conflict_of, GroupedConflicts>,
