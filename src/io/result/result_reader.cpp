@@ -113,7 +113,8 @@ template void ResultReader::read(std::uint64_t, std::size_t, SweptCells&,
                                  OrderOf<SweptCells>&) const;
 template std::vector<std::uint64_t> ResultReader::column(
     std::vector<std::uint64_t> Collisions::*) const;
-template std::vector<std::uint64_t> ResultReader::column(std::vector<std::uint64_t> Nearby::*) const;
+template std::vector<std::uint64_t> ResultReader::column(
+    std::vector<std::uint64_t> Nearby::*) const;
 template std::vector<Vec3> ResultReader::column(std::vector<Vec3> Collisions::*) const;
 template std::vector<std::uint32_t> ResultReader::column(
     std::vector<std::uint32_t> Collisions::*) const;
