@@ -3,6 +3,7 @@
 #include <tuple>
 
 #include "clearway/section.hpp"
+#include "core/describe/answer.hpp"
 #include "core/describe/fact.hpp"
 
 namespace clearway {
