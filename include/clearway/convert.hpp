@@ -97,8 +97,10 @@ struct OriginsPathReport {
 };
 
 struct ConvertReport {
-  bool was_finished = false;  ///< true if the store existed already, so that nothing was converted
-  std::uint64_t points = 0;   ///< number of points stored
+  /// True if the store existed already, so that nothing was converted. Then only what the store
+  /// keeps is known, and records without a point count as points that are not finite.
+  bool was_finished = false;
+  std::uint64_t points = 0;  ///< number of points stored
   std::uint64_t cells = 0;
   /// Number of points left out because a coordinate is not finite
   std::uint64_t non_finite_points = 0;

@@ -50,7 +50,8 @@ struct Tally {
   std::uint64_t points = 0;
   std::uint64_t source = kNoSource;  ///< the smallest one
   std::uint32_t first_pose = kNoPose, latest_first_pose = 0, last_pose = 0;
-  /// Of the points with that first pose the smallest source, and the body that touches it
+  /// The body that touches the point of `first_touched`, which is the smallest source of those that
+  /// are touched at the first pose.
   std::uint32_t first_body = 0;
   std::uint64_t first_touched = kNoSource;
   QuantumBox box{{kMost, kMost, kMost}, {kLeast, kLeast, kLeast}};
@@ -614,7 +615,8 @@ class ConflictSearch {
     return header_.depth && !(header_.model_solids > 0 && header_.clearance > 0);
   }
 
-  /// Of equally deep points the first one decides, which has the least source.
+  /// Takes the depth of a point if it is the greatest so far. The first of equally deep points
+  /// counts, which has the least source.
   static void add_depth(double depth, std::uint64_t source, Conflict& conflict) {
     if (source == Collisions::kNoPoint || (conflict.depth && depth <= *conflict.depth)) return;
     conflict.depth = depth;

@@ -21,14 +21,6 @@
 namespace clearway {
 namespace {
 
-/// "near, few". By hand, because gcc 12 warns of fmt::join() where it is optimised.
-template <typename Texts>
-std::string listed(const Texts& texts) {
-  std::string out;
-  for (const std::string& text : texts) out += (out.empty() ? "" : ", ") + text;
-  return out;
-}
-
 std::string place_text(const Answer& answer, const std::optional<FoundPlace>& place,
                        const PathWords& path, const std::string& unit) {
   const std::uint32_t pose = place->pose;
@@ -164,7 +156,7 @@ std::string doubt_clause(const Answer& answer, const PathWords& path, const std:
     }
     text += fmt::format(", {:.2f} {} in all,", length, unit);
   }
-  return text + " nothing could be found (" + listed(codes) + ")";
+  return text + " nothing could be found (" + with_commas(codes) + ")";
 }
 
 /// How many points are closer than what.
@@ -186,9 +178,9 @@ void find_with_budget(AnswerWords& words, const Answer& answer, const std::strin
       words.finding = "of this part " + points;
       return;
     case Verdict::kUndecided: {
-      std::vector<std::string> reasons;
-      for (const Reason reason : answer.reasons()) reasons.emplace_back(name_of(reason));
-      words.verdict += " (" + listed(reasons) + ")";
+      std::vector<const char*> reasons;
+      for (const Reason reason : answer.reasons()) reasons.push_back(name_of(reason));
+      words.verdict += " (" + with_commas(reasons) + ")";
       words.finding = points;
       if (answer.is_in_doubt()) words.finding += "; " + doubt_words(answer.doubts());
       return;

@@ -20,7 +20,6 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/point_classes.hpp"
 #include "core/query/verdict_words.hpp"
-#include "core/trajectory/chainage.hpp"
 #include "core/util/format.hpp"
 #include "findings/conflict_rank.hpp"
 #include "io/files/facts_json.hpp"
@@ -104,13 +103,11 @@ Json json_of_inputs(const ReportFacts& facts) {
 
 /// The stretches where bodies have no pose, so that nothing is known about them.
 Json json_of_unsearched(const ReportFacts& facts) {
-  using Stretch = UnsearchedStretch;
   const double start = facts.options.conflicts.chainage_start;
-  return list_of(facts.unsearched, [&](Stretch stretch) {
+  return list_of(facts.unsearched, [&](UnsearchedStretch stretch) {
     stretch.chainage_from += start;
     stretch.chainage_to += start;
-    Json out = members_json<&Stretch::first_pose, &Stretch::last_pose, &Stretch::chainage_from,
-                            &Stretch::chainage_to, &Stretch::bodies, &Stretch::has_answer>(stretch);
+    Json out = json_of_fact(stretch);
     for (Json& body : out["bodies"]) body = facts.bodies[body].name;
     return out;
   });
@@ -428,7 +425,7 @@ namespace {
 /// The answer in the words that other outputs have.
 void add_words(Json& out, const ReportFacts& facts) {
   const Answer& answer = facts.answer;
-  PathWords path{facts.options.labels, chainage_of(facts.poses)};
+  PathWords path{facts.options.labels, facts.chainage};
   for (double& chainage : path.chainage) chainage += facts.options.conflicts.chainage_start;
   const AnswerWords words =
       answer_words(answer, path, symbol_of(unit_of(facts.result.reader().header())));
@@ -456,7 +453,7 @@ std::string json_of(const ReportFacts& facts) {
   const Answer& answer = facts.answer;
   Json out = page_head(facts.options, facts.title);
   out["verdict"] = name_of(answer.verdict());
-  out["reasons"] = names_of(answer.reasons());
+  out["reasons"] = json_of_fact(answer.reasons());
   out["doubts"] = answer.doubts();
   add_words(out, facts);
   add_budget(out, answer);

@@ -34,8 +34,9 @@ struct ReportFacts {
   const Result& result;
   const Store& store;
   const ReportOptions& options;
-  std::span<const Pose> poses;  ///< of the path
-  Answer answer;                ///< as far as it is known by now
+  std::span<const Pose> poses;   ///< of the path
+  std::vector<double> chainage;  ///< of each pose, from 0
+  Answer answer;                 ///< as far as it is known by now
   std::vector<double> classes;
   std::vector<DrawnBody> bodies;  ///< the model alone where there is no vehicle
   std::string title = {};

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "clearway/error.hpp"
+#include "core/describe/section_report.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/query/point_classes.hpp"
 #include "core/section/section_intrusions.hpp"
@@ -329,16 +330,8 @@ static void to_json(Json& json, const ShownLoad& load) {
   json = members_json<&ShownLoad::outline_name, &ShownLoad::margin, &ShownLoad::outline>(load);
 }
 
-static void to_json(Json& json, const OutlineGap& gap) {
-  json = members_json<&OutlineGap::chainage_from, &OutlineGap::chainage_to, &OutlineGap::bins>(gap);
-}
-
 static void to_json(Json& json, const HalfWidth& half) { json = half.width; }
 static void to_json(Json& json, const BodyPivots& pivots) { json = {pivots.front, pivots.rear}; }
-
-static void to_json(Json& json, const SectionIgnoredCells& cells) {
-  json = members_json<&SectionIgnoredCells::blocked, &SectionIgnoredCells::high>(cells);
-}
 
 Json SectionView::json_of_check() const {
   if (!check) return {};
@@ -354,7 +347,7 @@ Json SectionView::json_of_check() const {
     json["verdict"] = row.bins ? Json(name_of(row.check.verdict)) : Json();
     json["reason"] = row.check.reason;
   }
-  out["gaps"] = check->gaps;
+  out["gaps"] = json_of_fact(check->gaps);
   out["places"] = places;
   out["stops"] = stops;
   return out;

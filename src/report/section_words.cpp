@@ -16,6 +16,9 @@ std::string section_unit(const SectionFacts& section) {
   return symbol_of(unit == LengthUnit::kDegrees ? LengthUnit::kMetre : unit);
 }
 
+namespace {
+
+/// Where a cell is, such as "1.24 m to the left at a height of 3.1 m".
 std::string cell_words(const std::array<std::int32_t, 2>& cell, const SectionFacts& section) {
   const std::string unit = section_unit(section);
   const bool left = cell[0] >= 0;
@@ -23,8 +26,6 @@ std::string cell_words(const std::array<std::int32_t, 2>& cell, const SectionFac
   return format_brief(g * (left ? j : -j - 1)) + " " + unit + " to the " +
          (left ? "left" : "right") + " at a height of " + format_brief(g * cell[1]) + " " + unit;
 }
-
-namespace {
 
 /// On how much of the path the load was searched.
 std::string extent_words(const SectionData& section) {

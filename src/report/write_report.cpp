@@ -130,14 +130,14 @@ class Report {
                .store = store,
                .options = options,
                .poses = poses,
+               .chainage = chainage_of(poses),
                .answer = judged(result, options.warnings),
                .classes = classes_of(result, options.classes),
                .bodies = drawn_bodies(model, poses, options),
                .title = title_of(options),
                .unsearched = unsearched_stretches(poses, options.bodies),
                .searched = searched_length(poses, options.bodies)},
-        path_(facts_.bodies),
-        chainage_(chainage_of(poses)) {
+        path_(facts_.bodies) {
     how_.bodies = options.bodies;
     how_.station = options.labels.station;
     facts_.lattice = lattice_for(page_box(path_), kStep);
@@ -270,7 +270,7 @@ class Report {
     LeastDistance& least = facts_.least.emplace();
     static_cast<FoundPlace&>(least) = *nearest;
     least.of = has_clearance ? "clearance" : "profile";
-    least.chainage = how_.chainage_start + chainage_[nearest->pose];
+    least.chainage = how_.chainage_start + facts_.chainage[nearest->pose];
     if (!has_clearance && is_vehicle()) least.body_number = nearest_body(*nearest);
     if (has_clearance && !answer.bodies.empty()) least.body_number = nearest->body;
     place(least);
@@ -327,8 +327,8 @@ class Report {
     append_columns("points", facts_.points.points, columns);
     append_columns("model", model, columns);
     if (!facts_.unseen.listed.empty()) append_columns("unseen", unseen_points(), columns);
-    append_pose_columns(shown, poses_, chainage_, profile_, facts_.options.labels, facts_.lattice,
-                        columns);
+    append_pose_columns(shown, poses_, facts_.chainage, profile_, facts_.options.labels,
+                        facts_.lattice, columns);
     if (is_vehicle()) append_body_columns(facts_.bodies, shown, facts_.lattice, columns);
     progress_.end();
     return columns;
@@ -342,7 +342,6 @@ class Report {
   SectionPicture picture_;
   ReportFacts facts_;
   PathPlaces path_;
-  std::vector<double> chainage_;
   Profile profile_;
 };
 

@@ -15,11 +15,12 @@
 #include "cli/support/options.hpp"
 #include "cli/support/program_json.hpp"
 #include "cli/verdict.hpp"
+#include "core/describe/section_report.hpp"
 #include "core/geometry/point_box.hpp"
 #include "core/query/point_classes.hpp"
 #include "core/util/format.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/file.hpp"
-#include "io/files/json.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
@@ -115,10 +116,7 @@ ordered_json describe(const SectionData& section) {
                            {"trajectory_hash", hash_text(section.trajectory_hash)},
                            {"warnings", section.warnings}};
   if (asked.pivots) description["pivots"] = {asked.pivots->front, asked.pivots->rear};
-  if (section.ignored_cells) {
-    description["ignored_cells"] = {{"blocked", section.ignored_cells->blocked},
-                                    {"high", section.ignored_cells->high}};
-  }
+  if (section.ignored_cells) description["ignored_cells"] = json_of_fact(*section.ignored_cells);
   if (asked.seen) {
     description["seen_cube"] = asked.seen_cube;
     description["unknown"] = section.unknown_cells().size();
@@ -164,7 +162,7 @@ ordered_json question_json(const ResultReader& result) {
 void add_verdict(ordered_json& description, const ResultHeader& h, const Answer& answer) {
   description["verdict"] = name_of(answer.verdict());
   if (answer.budget) {
-    description["reasons"] = names_of(answer.reasons());
+    description["reasons"] = json_of_fact(answer.reasons());
     description["margins"] = margins_json(answer);
     description["budget"] = budget_json(*answer.budget);
     description["near_points"] = answer.near_points;

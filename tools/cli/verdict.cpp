@@ -9,7 +9,7 @@
 #include "core/query/ignored_points.hpp"
 #include "core/query/verdict_words.hpp"
 #include "core/util/format.hpp"
-#include "io/files/json.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/result/answer.hpp"
 #include "io/result/floor_facts.hpp"
 
@@ -59,7 +59,7 @@ ordered_json depth_json(const Answer& answer) {
 
 ordered_json margins_json(const Answer& answer) {
   if (!answer.budget) return nullptr;
-  return {{"clear", answer.budget->clear()}, {"conflict", answer.budget->conflict()}};
+  return members_json<&ErrorBudget::clear, &ErrorBudget::conflict>(*answer.budget);
 }
 
 ordered_json seen_json(const Answer& answer) {
@@ -72,13 +72,11 @@ ordered_json seen_json(const Answer& answer) {
 }
 
 ordered_json budget_json(const ErrorBudget& budget) {
-  return {{"scan", budget.scan},       {"registration", budget.registration},
-          {"pose", budget.pose},       {"angle", budget.angle},
-          {"lever", budget.lever},     {"model", budget.model},
-          {"sigmas", budget.sigmas},   {"step", budget.step},
-          {"motion", budget.motion},   {"chord", budget.chord},
-          {"spacing", budget.spacing}, {"hard", budget.hard()},
-          {"way", budget.way()}};
+  using Budget = ErrorBudget;
+  return members_json<&Budget::scan, &Budget::registration, &Budget::pose, &Budget::angle,
+                      &Budget::lever, &Budget::model, &Budget::sigmas, &Budget::step,
+                      &Budget::motion, &Budget::chord, &Budget::spacing, &Budget::hard,
+                      &Budget::way>(budget);
 }
 
 std::string found_text(std::uint64_t colliding_points, std::uint64_t environment_points) {
@@ -93,17 +91,14 @@ std::string caveat_of(std::size_t warnings) {
          " above";
 }
 
-std::string warned_text(const Answer& answer) {
-  const std::vector<std::string> codes = answer.warned_of();
-  return codes.empty() ? "" : fmt::format("; its run warned of {}", fmt::join(codes, ", "));
-}
-
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,
                               const std::string& unit) {
   const ResultHeader& header = result.header();
   if (result.collisions() > 0 && !header.ignores_points() && !header.budget) return "";
   const Answer answer = answer_of(result);
-  return verdict_text(answer, path, unit, warned_text(answer));
+  const std::vector<std::string> codes = answer.warned_of();
+  return verdict_text(answer, path, unit,
+                      codes.empty() ? "" : "; its run warned of " + with_commas(codes));
 }
 
 void repeat_warnings(const ResultReader& result, const std::string& prefix) {
@@ -151,7 +146,7 @@ void add_answer(const Answer& answer, const PathWords& path, ordered_json& out) 
   out["clearance_points"] = answer.clearance_points;
   out["profile_poses"] = answer.profile_poses;
   out["verdict"] = name_of(answer.verdict());
-  out["reasons"] = names_of(answer.reasons());
+  out["reasons"] = json_of_fact(answer.reasons());
   out["doubts"] = answer.doubts();
   out["margins"] = margins_json(answer);
   if (answer.budget) {

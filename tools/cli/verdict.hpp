@@ -18,10 +18,6 @@ std::string found_text(std::uint64_t colliding_points, std::uint64_t environment
 /// warnings. Empty without warnings.
 std::string caveat_of(std::size_t warnings);
 
-/// A clause with the codes of what the run of a result warned of, as far as the result keeps them,
-/// such as "; its run warned of large-steps"; empty where there are none.
-std::string warned_text(const Answer& answer);
-
 /// The verdict of an existing result, in one sentence; empty where points collide and none was
 /// ignored, because the other output says enough then. Reads all tables of the result.
 std::string verdict_to_repeat(const ResultReader& result, const PathWords& path,

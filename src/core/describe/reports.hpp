@@ -37,7 +37,8 @@ inline constexpr std::tuple kFactsOf<OriginsPathReport>{
 template <>
 inline constexpr std::tuple kFactsOf<ConvertReport>{
     fact<&ConvertReport::was_finished>(
-        "Whether the store was there already, so that nothing was converted."),
+        "Whether the store was there already, so that nothing was converted. Then only what the "
+        "store keeps is known, and records without a point count as points that are not finite."),
     fact<&ConvertReport::points>("How many points were stored."),
     fact<&ConvertReport::cells>("Into how many cells the points were divided."),
     fact<&ConvertReport::non_finite_points>(

@@ -1,5 +1,7 @@
 #include "core/query/verdict_words.hpp"
 
+#include "core/util/format.hpp"
+
 namespace clearway {
 
 std::string verdict_words(Verdict verdict, bool has_warnings) {
@@ -20,9 +22,7 @@ std::string reason_words(Reason reason, std::span<const std::string> doubts) {
     case Reason::kQuestionInDoubt:
       break;
   }
-  std::string codes;
-  for (const std::string& code : doubts) codes += (codes.empty() ? "" : ", ") + code;
-  return "the question is in doubt (" + codes + ")";
+  return "the question is in doubt (" + with_commas(doubts) + ")";
 }
 
 std::string doubt_words(std::span<const std::string> doubts) {

@@ -318,11 +318,8 @@ std::string doubt_about_stretches(const SectionData& section, SectionBinRange bi
     if (doubt_of(warning) != Doubt::kStretch || !concerns(warning, section, bins)) continue;
     if (!all_seen || !lacks_points(warning.code)) codes.insert(warning.code);
   }
-  std::string listed;
-  for (const std::string_view code : codes) {
-    listed += (listed.empty() ? "" : ", ") + std::string(code);
-  }
-  return listed.empty() ? "" : "on stretches of the path nothing could be found (" + listed + ")";
+  if (codes.empty()) return "";
+  return "on stretches of the path nothing could be found (" + with_commas(codes) + ")";
 }
 
 /// Whether an outline is too small for any load, as in another unit; see "model-unit" of a model.

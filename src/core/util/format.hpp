@@ -24,6 +24,14 @@ std::string body_words(std::string_view name);
 /// Texts as a list in a sentence, such as "times, names and stations".
 std::string format_list(const std::vector<std::string>& texts);
 
+/// Texts with commas between them, such as "near, few".
+template <typename Texts>
+std::string with_commas(const Texts& texts) {
+  std::string out;
+  for (const std::string_view text : texts) out.append(out.empty() ? "" : ", ").append(text);
+  return out;
+}
+
 /// The shortest decimal that reads back as the same number; without an exponent from 1e-4 to 1e16.
 std::string format_number(double value);
 

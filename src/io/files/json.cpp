@@ -430,12 +430,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  return list;
-}
-
 }  // namespace
 
 KeyReader KeyReader::parse(const std::filesystem::path& file, const std::string& text) {
@@ -451,10 +445,10 @@ KeyReader KeyReader::parse(const std::filesystem::path& file, const std::string&
 }
 
 void KeyReader::allow(const std::vector<std::string>& known) const {
-  if (!value().is_object()) refuse("expected an object with the keys " + list_of(known));
+  if (!value().is_object()) refuse("expected an object with the keys " + with_commas(known));
   for (const auto& [name, value] : value().items()) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    below(name, value).refuse("unknown key; expected one of " + list_of(known));
+    below(name, value).refuse("unknown key; expected one of " + with_commas(known));
   }
 }
 

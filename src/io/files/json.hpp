@@ -33,14 +33,6 @@ Json or_null(const std::optional<Value>& value) {
   return value ? Json(*value) : Json();
 }
 
-/// The name_of() each of them, such as the reasons of a verdict.
-template <typename Values>
-Json names_of(const Values& values) {
-  Json names = Json::array();
-  for (const auto& value : values) names.push_back(name_of(value));
-  return names;
-}
-
 /// The text of a value as programs print it and keep it, and a line break. indent: the blanks of
 /// each level; -1 for all on one line. Like all texts below, it has U+FFFD instead of bytes that
 /// are not UTF-8.

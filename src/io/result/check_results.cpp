@@ -114,9 +114,7 @@ std::string field_text(const Field<QueryParameters, Value>& field, const ResultH
 }
 
 std::string bodies_text(const ResultHeader& header) {
-  std::string text;
-  for (const std::string& body : header.bodies) text += (text.empty() ? "" : ", ") + body;
-  return text.empty() ? "one model" : text;
+  return header.bodies.empty() ? "one model" : with_commas(header.bodies);
 }
 
 std::string classes_text(const ResultHeader& header) {

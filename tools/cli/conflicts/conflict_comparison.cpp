@@ -272,9 +272,9 @@ class ComparedConflicts {
                       side.chainage[part.last_pose]);
   }
 
-  /// The same conflict in both. It is worse where it comes nearer, or reaches deeper, by more than
-  /// `worse_by`. How deep a point is behind a surface does not follow from distances, but from the
-  /// shift that its own points need.
+  /// Judges a conflict that is the same in both. It is worse where it comes nearer, or reaches
+  /// deeper, by more than `worse_by`. How deep a point is behind a surface does not follow from
+  /// distances, but from the shift that its own points need.
   ComparedPlace pair_place(const Conflict& in_a, const Conflict& in_b) const {
     const auto found = [&](Fate fate, std::string note = {}) {
       return whole_place(fate, &in_a, &in_b, std::move(note));

@@ -9,6 +9,7 @@
 #include "core/describe/conflict.hpp"
 #include "core/query/ignored_points.hpp"
 #include "core/util/format.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/files/xxh64.hpp"
 #include "io/result/conflicts/conflict_words.hpp"
@@ -169,7 +170,7 @@ Json summary_of(const ConflictFile& file) {
            {"between_poses", header.between_poses},
            {"verdict", name_of(file.answer.verdict())}};
   if (header.budget) {
-    out["reasons"] = names_of(file.answer.reasons());
+    out["reasons"] = json_of_fact(file.answer.reasons());
     out["margins"] = {{"clear", header.budget->clear()}, {"conflict", header.budget->conflict()}};
     out["near_points"] = file.answer.near_points;
     out["certain_points"] = file.answer.certain.points;

@@ -8,6 +8,7 @@
 
 #include "clearway/error.hpp"
 #include "core/describe/stations.hpp"
+#include "io/files/facts_json.hpp"
 #include "io/files/file.hpp"
 #include "io/files/text_writer.hpp"
 #include "io/result/conflicts/conflict_fields.hpp"
@@ -58,7 +59,7 @@ void write_csv(const StationFile& stations, const File& file) {
 
 Json row_json(const StationRow& row, const std::vector<std::string>& bodies) {
   Json out = json_of(fields_of(row, bodies));
-  out["reasons"] = names_of(row.reasons);
+  out["reasons"] = json_of_fact(row.reasons);
   out["doubts"] = row.doubts;
   out["searched"] = row.is_searched;
   return out;

@@ -118,6 +118,24 @@ void write_cells(Distribution& distribution, const SplitTree& tree, const Lattic
   progress.end();
 }
 
+/// Takes the facts of a conversion that the description of its store has.
+void take_facts(const StoreMetadata& metadata, ConvertReport& report) {
+  const auto& [scale, offset] = metadata.quantisation;
+  report.points = metadata.point_count;
+  report.scale = {scale[0], scale[1], scale[2]};
+  report.offset = {offset[0], offset[1], offset[2]};
+  const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
+  report.withheld_points = withheld.left_out();
+  report.kept_withheld_points = withheld.points - withheld.left_out();
+  report.origins = metadata.origins ? metadata.origins->quanta.size() : 0;
+  report.points_without_origin =
+      metadata.origins ? metadata.origins->points_without : metadata.point_count;
+  if (!metadata.near) return;
+  report.far_points = metadata.near->left_out;
+  report.unread_points = metadata.near->unread;
+  report.passed_over_files = metadata.near->passed_over;
+}
+
 constexpr std::uint64_t kMiB = std::uint64_t{1} << 20;
 constexpr std::uint64_t kBaseBytes = 64 * kMiB;  // memory of batches, index and libraries
 // Memory per thread: a counting grid and its refinement.
@@ -494,21 +512,19 @@ class Conversion {
 
   /// Describes the corridor in the store, once all points were counted.
   void describe_corridor(const EnvironmentSource& environment, const Corridor& corridor) {
-    report_.far_points = environment.counts().far_points;
-    report_.unread_points = environment.counts().unread_points;
+    const auto& counts = environment.counts();
     const auto& passed_over = environment.passed_over();
-    report_.passed_over_files =
-        static_cast<std::uint64_t>(std::count(passed_over.begin(), passed_over.end(), true));
-    if (report_.points == 0 && report_.far_points > 0) {
-      refuse_empty_corridor(options_, corridor, report_.box, report_.far_points);
+    if (report_.points == 0 && counts.far_points > 0) {
+      refuse_empty_corridor(options_, corridor, report_.box, counts.far_points);
     }
     report_.metadata.near = {.path = {corridor.path().begin(), corridor.path().end()},
                              .within = corridor.within(),
                              .whole = report_.box.value_or(Box{}),
-                             .left_out = report_.far_points,
-                             .unread = report_.unread_points,
-                             .unread_bytes = environment.counts().unread_bytes,
-                             .passed_over = report_.passed_over_files};
+                             .left_out = counts.far_points,
+                             .unread = counts.unread_points,
+                             .unread_bytes = counts.unread_bytes,
+                             .passed_over = static_cast<std::uint64_t>(
+                                 std::count(passed_over.begin(), passed_over.end(), true))};
   }
 
   /// Judges the coordinates by the place where they lie, now that it is known.
@@ -543,16 +559,12 @@ class Conversion {
       report_.metadata.source_points.resize(report_.metadata.sources.size());
     }
     const std::uint64_t withheld = environment.counts().withheld_points;
-    (options_.keep_withheld ? report_.kept_withheld_points : report_.withheld_points) = withheld;
     if (withheld > 0) {
       report_.metadata.withheld = {.points = withheld, .kept = options_.keep_withheld};
     }
     for (const CloudInfo& info : environment.infos()) report_.metadata.dates.add(info.date);
     report_.absent_points = environment.counts().absent_points;
     report_.non_finite_points = environment.counts().non_finite_points;
-    const Quantisation& quanta = environment.quantisation();
-    report_.scale = {quanta.scale[0], quanta.scale[1], quanta.scale[2]};
-    report_.offset = {quanta.offset[0], quanta.offset[1], quanta.offset[2]};
   }
 
   /// Collects the origins of all points, now that the inputs have been read once.
@@ -575,14 +587,11 @@ class Conversion {
   /// Describes the origins in the store and warns of them, once all points were counted.
   void record_origins() {
     StoreMetadata& metadata = report_.metadata;
-    report_.points_without_origin = report_.points;
     if (origins_ != nullptr) metadata.origins = origins_->origins(report_.points);
     if (!metadata.origins) {
       origins_ = nullptr;
       return;
     }
-    report_.origins = metadata.origins->quanta.size();
-    report_.points_without_origin = metadata.origins->points_without;
     const double metres = metres_of(metadata.unit);
     origins_->warn(*metadata.origins, report_.points, report_.box, metres > 0 ? metres : 1, log_);
   }
@@ -665,6 +674,7 @@ class Conversion {
     closed.get();
     output_.publish();
     if (journal_) journal_->remove_after_publication();
+    take_facts(report_.metadata, report_);
     report_.output_bytes = std::filesystem::file_size(options_.output);
     report_.confirm_seconds = watch_.lap();
     report_.busy_seconds = clocks_.seconds();
@@ -776,28 +786,13 @@ namespace {
 /// Takes the facts and warnings of a conversion that the store keeps.
 void describe(const StoreReader& store, ConvertReport& report, MessageLog& log) {
   const StoreMetadata& metadata = store.metadata();
-  const auto& [scale, offset] = metadata.quantisation;
-  report.points = metadata.point_count;
+  take_facts(metadata, report);
   report.cells = store.cells().size();
   report.non_finite_points = metadata.points_without_place();
-  const StoreWithheld withheld = metadata.withheld.value_or(StoreWithheld());
-  report.withheld_points = withheld.left_out();
-  report.kept_withheld_points = withheld.points - withheld.left_out();
-  report.scale = {scale[0], scale[1], scale[2]};
-  report.offset = {offset[0], offset[1], offset[2]};
-  report.points_without_origin = metadata.point_count;
-  if (metadata.origins) {
-    report.origins = metadata.origins->quanta.size();
-    report.points_without_origin = metadata.origins->points_without;
-  }
-  if (!store.tree().empty()) {
-    report.box = position_box(metadata.quantisation, store.tree()[0].box);
-  }
   if (metadata.near) {
     report.box = metadata.near->whole;
-    report.far_points = metadata.near->left_out;
-    report.unread_points = metadata.near->unread;
-    report.passed_over_files = metadata.near->passed_over;
+  } else if (!store.tree().empty()) {
+    report.box = position_box(metadata.quantisation, store.tree()[0].box);
   }
   report.output_bytes = std::filesystem::file_size(store.name());
   for (const Message& warning : metadata.warnings) log.add(warning);
