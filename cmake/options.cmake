@@ -63,20 +63,20 @@ function(clearway_sources variable)
   set(${variable} ${sources} PARENT_SCOPE)
 endfunction()
 
-# clearway_unity(TARGET [FOLDER=OTHER...]): compiles the sources of each folder of the target as one
-# (CLEARWAY_UNITY), and those of FOLDER together with those of OTHER. A source with
+# clearway_unity(TARGET [FOLDER...]): compiles the sources of the target as one (CLEARWAY_UNITY), and
+# those in each FOLDER and below as one of their own, the folder that is named first. A source with
 # SKIP_UNITY_BUILD_INCLUSION stays alone.
 function(clearway_unity target)
   get_target_property(sources ${target} SOURCES)
   foreach(source ${sources})
-    get_filename_component(folder ${source} DIRECTORY)
-    foreach(joined ${ARGN})
-      string(REGEX REPLACE "^${folder}=" "" other "${joined}")
-      if(NOT other STREQUAL joined)
-        set(folder ${other})
+    set(group of_${target})
+    foreach(folder ${ARGN})
+      if(source MATCHES "^${folder}/")
+        set(group in_${folder})
+        break()
       endif()
     endforeach()
-    string(MAKE_C_IDENTIFIER "in_${folder}" group)
+    string(MAKE_C_IDENTIFIER "${group}" group)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${group})
   endforeach()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${CLEARWAY_UNITY} UNITY_BUILD_MODE GROUP)

@@ -21,7 +21,7 @@ namespace {
 constexpr double kInSection = 1e-6;
 /// Radians: a path that turns less than this below a body is straight, and has no outside.
 constexpr double kStraight = 1e-6;
-constexpr int kMostSteps = 100;
+constexpr int kMostStepsOfOverthrow = 100;
 
 /// The place of the path whose cross-section a place of a body lies in.
 struct Foot {
@@ -86,7 +86,7 @@ class FootFinder {
   /// halved values (the Illinois algorithm), and by bisection where that is slow.
   double root(const Vec3& place, std::size_t way) const {
     double from = 0, to = 1, at_from = ahead(place, way), at_to = ahead(place, way + 1);
-    for (int step = 0; step < kMostSteps && at_from > 0; ++step) {
+    for (int step = 0; step < kMostStepsOfOverthrow && at_from > 0; ++step) {
       double t =
           step % 3 == 2 ? from + (to - from) / 2 : from + (to - from) * at_from / (at_from - at_to);
       if (!(t > from && t < to)) t = from + (to - from) / 2;

@@ -26,7 +26,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-struct CheckCommand {
+struct SectionCheckCommand {
   std::filesystem::path section;
   LoadInput load;
   SiteInput site;
@@ -70,7 +70,7 @@ void add_warnings(ordered_json& out, const Section& section, const LoadInput& lo
 }
 
 ordered_json json_of(const SectionCheck& check, double margin, const Witnesses& witnesses,
-                     const Section& section, const CheckCommand& options) {
+                     const Section& section, const SectionCheckCommand& options) {
   ordered_json out =
       program_json({{"section", options.section}, {"outline", options.load.outline}});
   out["margin"] = margin;
@@ -103,7 +103,7 @@ ordered_json json_of(const OutlineRowCheck& check, const OutlineRow& row, bool b
 
 ordered_json json_of(const OutlineTableCheck& check, const OutlineTable& table,
                      const Witnesses& witnesses, const Section& section,
-                     const CheckCommand& options) {
+                     const SectionCheckCommand& options) {
   ordered_json out = program_json({{"section", options.section}, {"table", options.load.table}});
   add_verdict(out, check);
   out["row"] = check.stop ? ordered_json(check.stop->row) : ordered_json(nullptr);
@@ -133,7 +133,7 @@ int exit_code_of(SectionVerdict verdict) {
                                                : kUndecided;
 }
 
-int check_outline(CheckCommand& options, const Section& section, double metres) {
+int check_outline(SectionCheckCommand& options, const Section& section, double metres) {
   const std::vector<OutlinePoint> outline = read_load(options.load, section, metres);
   const double margin = options.load.margin.value_or(section.data().parameters.margin);
   check_site(options.site, nullptr);
@@ -156,7 +156,7 @@ int check_outline(CheckCommand& options, const Section& section, double metres) 
   return exit_code_of(check.verdict);
 }
 
-int check_table(CheckCommand& options, const Section& section, double metres) {
+int check_table(SectionCheckCommand& options, const Section& section, double metres) {
   const OutlineTable table = read_load_table(options.load, section, metres);
   check_site(options.site, &table);
   options.site.read(section, metres);
@@ -177,7 +177,7 @@ int check_table(CheckCommand& options, const Section& section, double metres) {
   return exit_code_of(check.verdict);
 }
 
-int run_check(CheckCommand& options) {
+int run_check(SectionCheckCommand& options) {
   if (!options.load.is_given()) throw CLI::RequiredError("--outline or --table");
   const Section section(options.section);
   const double metres = convert_for(options.lengths, section, options.section);
@@ -188,7 +188,7 @@ int run_check(CheckCommand& options) {
 }  // namespace
 
 void add_section_check(CLI::App& section, int& exit_code) {
-  const auto options = std::make_shared<CheckCommand>();
+  const auto options = std::make_shared<SectionCheckCommand>();
   CLI::App* command = section.add_subcommand(
       "check", "Say whether a load with this outline passes, and where it is stopped");
   add_file(*command, "SECTION", options->section, "Section of clearway section find")->required();

@@ -17,6 +17,9 @@ namespace clearway {
 
 /// Number of points of one block, a leaf of the tree inside a cell.
 inline constexpr std::uint32_t kBlockPoints = 64;
+/// Diagonal of a block of points of a surface in units of their spacing: it is 8 spacings wide and
+/// 8 high.
+inline constexpr double kSpacingsOfBlock = 11.3;
 
 CLEARWAY_HD constexpr std::uint64_t divide_up(std::uint64_t n, std::uint64_t unit) {
   return (n + unit - 1) / unit;

@@ -28,7 +28,7 @@ constexpr double kSameEnd = 0.001;
 }
 
 /// A part of the path from `from` up to `to`, without `to`.
-struct Stretch {
+struct PathPart {
   double from, to;
 };
 
@@ -70,23 +70,23 @@ class ChainageOfStation {
   std::span<const double> chainage_, station_;
 };
 
-std::vector<Stretch> stretches_of(const OutlineTable& table, const std::vector<double>& chainage,
-                                  std::span<const double> station) {
-  std::vector<Stretch> out;
+std::vector<PathPart> stretches_of(const OutlineTable& table, const std::vector<double>& chainage,
+                                   std::span<const double> station) {
+  std::vector<PathPart> out;
   for (const OutlineRow& row : table.rows) out.push_back({row.from, row.to});
   if (!table.by_station) return out;
   const ChainageOfStation chainage_of(table, chainage, station);
-  for (Stretch& stretch : out) stretch = {chainage_of(stretch.from), chainage_of(stretch.to)};
+  for (PathPart& stretch : out) stretch = {chainage_of(stretch.from), chainage_of(stretch.to)};
   return out;
 }
 
 /// Moves the ends of the table that are ends of a path of this length to infinity. stretches:
 /// ascending and apart from each other.
-void to_the_ends(std::vector<Stretch>& stretches, double length) {
-  const auto first = std::ranges::find_if(stretches, [](const Stretch& s) { return s.to > 0; });
+void to_the_ends(std::vector<PathPart>& stretches, double length) {
+  const auto first = std::ranges::find_if(stretches, [](const PathPart& s) { return s.to > 0; });
   if (first != stretches.end() && first->from <= kSameEnd) first->from = -kEndless;
   const auto last = std::find_if(stretches.rbegin(), stretches.rend(),
-                                 [&](const Stretch& s) { return s.from <= length; });
+                                 [&](const PathPart& s) { return s.from <= length; });
   if (last != stretches.rend() && last->to >= length - kSameEnd) last->to = kEndless;
 }
 
@@ -96,7 +96,7 @@ class BinsOfStretches {
   explicit BinsOfStretches(const SectionData& data) : data_(data) {}
 
   /// None where the load has no pose in them.
-  std::optional<SectionBinRange> touched_by(const Stretch& stretch) const {
+  std::optional<SectionBinRange> touched_by(const PathPart& stretch) const {
     if (data_.bins.empty() || stretch.from > data_.chainage.back()) return std::nullopt;
     const double last = data_.bins.back(), side = data_.parameters.bin;
     const double last_place = std::nextafter(stretch.to, stretch.from);
@@ -114,10 +114,10 @@ class BinsOfStretches {
 };
 
 /// The parts of the path that no stretch holds. stretches: ascending and apart from each other.
-std::vector<Stretch> gaps_between(std::span<const Stretch> stretches) {
-  std::vector<Stretch> gaps;
+std::vector<PathPart> gaps_between(std::span<const PathPart> stretches) {
+  std::vector<PathPart> gaps;
   double end = -kEndless;
-  for (const Stretch& stretch : stretches) {
+  for (const PathPart& stretch : stretches) {
     if (stretch.from > end) gaps.push_back({end, stretch.from});
     end = stretch.to;
   }
@@ -172,8 +172,8 @@ OutlineTableCheck Section::check(const OutlineTable& table, std::optional<double
   const std::vector<double>& chainage = data_.chainage;
   const double length = chainage.empty() ? 0 : chainage.back();
   const BinsOfStretches bins(data_);
-  const std::vector<Stretch> given = stretches_of(table, chainage, station);
-  std::vector<Stretch> stretches = given;
+  const std::vector<PathPart> given = stretches_of(table, chainage, station);
+  std::vector<PathPart> stretches = given;
   to_the_ends(stretches, length);
   OutlineTableCheck out;
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
@@ -195,7 +195,7 @@ OutlineTableCheck Section::check(const OutlineTable& table, std::optional<double
     }
     out.rows.push_back(std::move(judged));
   }
-  for (const Stretch& gap : gaps_between(stretches)) {
+  for (const PathPart& gap : gaps_between(stretches)) {
     const auto touched = bins.touched_by(gap);
     if (!touched) continue;
     out.gaps.push_back({std::max(gap.from, 0.0), std::min(gap.to, length), *touched});

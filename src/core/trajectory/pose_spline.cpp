@@ -6,7 +6,7 @@
 #include <string>
 
 #include "clearway/error.hpp"
-#include "core/trajectory/rotation_vector.hpp"
+#include "core/trajectory/eigen_pose.hpp"
 
 namespace clearway {
 namespace {
@@ -30,10 +30,6 @@ Polar polar_of(const Pose& pose) {
   const double sign = nearest.determinant() < 0 ? -1 : 1;
   return {Eigen::Quaterniond(Eigen::Matrix3d(sign * nearest)).normalized(), sign * stretch,
           sign < 0};
-}
-
-Eigen::Vector3d position_of(const Pose& pose) {
-  return Eigen::Map<const Eigen::Vector3d>(pose.translation);
 }
 
 Eigen::Vector3d shortened(const Eigen::Vector3d& v, double most) {

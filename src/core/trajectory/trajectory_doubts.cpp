@@ -376,9 +376,9 @@ std::optional<Message> upside_down(const TrajectorySummary& summary, RotationSou
 /// A warning of roll with the wrong sign. The path has to be level outside of its curves, because
 /// on a slope a path may lean outwards wherever it turns uphill.
 std::optional<Message> wrong_roll(std::span<const Pose> poses, const std::string& name) {
-  constexpr double kLevel = 0.015 / kUsualRails, kEnough = 0.2;
+  constexpr double kMostLean = 0.015 / kUsualRails, kEnough = 0.2;
   const CurveLean lean = lean_in_curves(poses, kWrongCant / kUsualRails);
-  if (!lean.is_mostly_outwards() || lean.elsewhere > kLevel) return std::nullopt;
+  if (!lean.is_mostly_outwards() || lean.elsewhere > kMostLean) return std::nullopt;
   if (lean.straight < kEnough * (lean.straight + lean.curved)) return std::nullopt;
   const double share = lean.outwards / lean.curved;
   return warning("cant-side",

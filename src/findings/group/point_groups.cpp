@@ -290,10 +290,10 @@ class LayerGroups {
 };
 
 /// Groups the points layer by layer, as many layers together as may be at work at the same time.
-class Grouping {
+class GroupFinder {
  public:
-  Grouping(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
-           const GroupingLimit& limit, const std::vector<bool>* only, Progress& progress)
+  GroupFinder(std::span<const QuantumPoint> points, const Neighbourhood& neighbourhood,
+              const GroupingLimit& limit, const std::vector<bool>* only, Progress& progress)
       : points_(points),
         neighbourhood_(neighbourhood),
         limit_(limit),
@@ -361,7 +361,7 @@ PointGroups group_points(std::span<const QuantumPoint> points, const Neighbourho
                          std::uint64_t min_points, Progress& progress, const GroupingLimit& limit,
                          const std::vector<bool>* only) {
   PointGroups out;
-  out.of_point = Grouping(points, neighbourhood, limit, only, progress).run();
+  out.of_point = GroupFinder(points, neighbourhood, limit, only, progress).run();
   std::vector<std::uint32_t> size(points.size());  // at the root of each group
   for (const std::uint32_t root : out.of_point) ++size[root];
   // A root is the first point of its group, so it has its number before the others ask for it.

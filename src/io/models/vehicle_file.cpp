@@ -287,13 +287,13 @@ class VehicleReader {
 };
 
 /// The stretch that a body occupies, in metres ahead of the path's pose.
-struct Stretch {
+struct OccupiedLength {
   double from, to;
 
-  double gap_to(const Stretch& other) const {
+  double gap_to(const OccupiedLength& other) const {
     return std::max({from - other.to, other.from - to, 0.0});
   }
-  void add(const Stretch& other) {
+  void add(const OccupiedLength& other) {
     from = std::min(from, other.from);
     to = std::max(to, other.to);
   }
@@ -302,7 +302,7 @@ struct Stretch {
 /// A body that follows the path, placed on a straight path.
 struct BodyAhead {
   const BodyEntry& entry;
-  Stretch body, pivots;
+  OccupiedLength body, pivots;
 };
 
 /// How far the origin of each body is ahead of the path's pose on a straight path; none for bodies
@@ -378,7 +378,7 @@ void warn_of_far_bodies(const std::filesystem::path& file, const std::vector<Bod
     }
   }
   // The vehicle grows from the path's pose, as a train does wagon by wagon.
-  Stretch vehicle{0, 0};
+  OccupiedLength vehicle{0, 0};
   const auto near = [&](const BodyAhead& one) { return vehicle.gap_to(one.body) <= far; };
   for (auto next = std::ranges::find_if(apart, near); next != apart.end();
        next = std::ranges::find_if(apart, near)) {

@@ -41,7 +41,7 @@ std::string upper(std::string_view text) {
 
 bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_white_space(std::string_view text) {
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
   return text;
@@ -124,7 +124,7 @@ std::string crs_text_of(std::span<const std::byte> bytes) {
     if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
     decoded = text.substr(0, text.find('\0'));
   }
-  return std::string(trimmed(decoded));
+  return std::string(without_white_space(decoded));
 }
 
 namespace {
@@ -144,9 +144,9 @@ bool is_word(char c) {
 bool is_wkt(std::string_view text) {
   const auto word_end = std::ranges::find_if_not(text, is_word);
   if (word_end == text.begin()) return false;
-  text = trimmed({word_end, text.end()});
+  text = without_white_space({word_end, text.end()});
   return text.starts_with('[') ||
-         (text.starts_with('(') && trimmed(text.substr(1)).starts_with('"'));
+         (text.starts_with('(') && without_white_space(text.substr(1)).starts_with('"'));
 }
 
 /// The systems in a well-known text, by its brackets outside of quoted names alone.
@@ -187,7 +187,7 @@ WktSystems systems_of(std::string_view text) {
   std::size_t word = 0, word_end = 0;
   bool quoted = false;
   const auto end_system = [&](std::string_view system) {
-    out.texts.push_back(trimmed(system));
+    out.texts.push_back(without_white_space(system));
     out.texts.insert(out.texts.end(), within.begin(), within.end());
     within.clear();
     begin = kNone;
@@ -295,7 +295,7 @@ struct ReadSystems {
 ReadSystems read_systems(PJ_CONTEXT* context, std::string_view text) {
   ReadSystems out;
   WktSystems systems;
-  text = trimmed(text);
+  text = without_white_space(text);
   if (text.size() > kLongestText || depth_of(text) > kDeepest) {
     out.unread = text;
     return out;
@@ -333,9 +333,10 @@ ProjObject create_crs(PJ_CONTEXT* context, const std::string& text) {
   if (!read.heights || proj_get_type(read.plane.get()) == PJ_TYPE_COMPOUND_CRS) {
     return std::move(read.plane);
   }
-  const std::string both = "COMPD_CS[\"" + std::string(trimmed(proj_get_name(read.plane.get()))) +
-                           " + " + std::string(trimmed(proj_get_name(read.heights.get()))) + "\"," +
-                           read.plane_text + "," + read.heights_text + "]";
+  const std::string both =
+      "COMPD_CS[\"" + std::string(without_white_space(proj_get_name(read.plane.get()))) + " + " +
+      std::string(without_white_space(proj_get_name(read.heights.get()))) + "\"," +
+      read.plane_text + "," + read.heights_text + "]";
   ProjObject compound(proj_create_from_wkt(context, both.c_str(), nullptr, nullptr, nullptr));
   return compound ? std::move(compound) : std::move(read.plane);
 }

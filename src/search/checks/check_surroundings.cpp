@@ -258,9 +258,6 @@ namespace {
 constexpr double kLargestRadius = 10;  ///< metres
 /// The least number of steps of the coordinates in a radius.
 constexpr double kSteps = 10;
-/// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
-/// spacings wide and 8 spacings high.
-constexpr double kSpacingsOfBlock = 11.3;
 
 void warn_of_large_radius(const Question& question, MessageLog& log) {
   const double radius = question.query.radius, longest = Sides(question.model).longest;

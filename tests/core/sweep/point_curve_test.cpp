@@ -17,7 +17,7 @@ namespace {
 const Box kModel{{-2, -1, 0}, {3, 1, 1.5}};
 constexpr double kReach = 0.5;
 
-struct Place {
+struct LongPlace {
   long double x, y, z;
   Vec3 rounded() const {
     return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)};
@@ -28,7 +28,8 @@ struct Place {
 };
 
 /// The place on the parabola through three poses at t, by Lagrange's formula.
-Place place_at(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e, long double t) {
+LongPlace place_at(const MotionTreeRef& motion, const MotionNode& node, const Vec3& e,
+                   long double t) {
   const MotionParabola through(node);
   const Vec3 a = motion.inverse_poses[through.first].apply(e);
   const Vec3 b = motion.inverse_poses[through.middle].apply(e);

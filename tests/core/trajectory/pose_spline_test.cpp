@@ -17,8 +17,9 @@ namespace {
 
 const Box kBodyOfSpline{{-2, -1, 0}, {3, 1, 1.5}};
 
-struct Curve {
-  explicit Curve(std::vector<Pose> given) : poses(std::move(given)), spline(poses, motions()) {}
+struct SplinedPoses {
+  explicit SplinedPoses(std::vector<Pose> given)
+      : poses(std::move(given)), spline(poses, motions()) {}
 
   std::vector<double> motions() const {
     std::vector<double> out;
@@ -52,7 +53,7 @@ Pose on_helix(double s) {
 double helix_error(int count) {
   std::vector<Pose> poses;
   for (int i = 0; i < count; ++i) poses.push_back(on_helix(4 * std::numbers::pi * i / (count - 1)));
-  const Curve curve(poses);
+  const SplinedPoses curve(poses);
   double error = 0;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     for (int k = 0; k <= 20; ++k) {
@@ -71,7 +72,7 @@ TEST_CASE("a pose spline passes through its poses, with rotations that stay orth
   const bool printed = GENERATE(false, true);
   std::vector<Pose> poses = random_walk(random, 200, far, 3.1);
   if (printed) print_with_six_digits(poses);
-  const Curve curve(poses);
+  const SplinedPoses curve(poses);
   const double ulp = far == 0 ? 1e-13 : 4e-9;
   bool passes = true;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
@@ -96,7 +97,7 @@ TEST_CASE("a pose spline's velocities are continuous at its poses") {
   SECTION("all poses different") {}
   SECTION("a stop") { poses.insert(poses.begin() + 50, 20, poses[50]); }
   SECTION("printed with six digits") { print_with_six_digits(poses); }
-  const Curve curve(poses);
+  const SplinedPoses curve(poses);
   double worst = 0;
   for (std::size_t before = 0, i = 1; i + 1 < poses.size(); ++i) {
     if (curve.span(i - 1) > 0) before = i - 1;
@@ -148,7 +149,7 @@ TEST_CASE("a pose spline stays near its chords at corners, stops and jumps") {
   SECTION("there and back") {
     for (int i = 0; i < 20; ++i) poses.push_back(translation({i % 2 * 1.0, 0, 0}));
   }
-  const Curve curve(poses);
+  const SplinedPoses curve(poses);
   double worst = 0;
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const double length = distance(poses[i], poses[i + 1]);
@@ -172,7 +173,7 @@ TEST_CASE("a turn on the spot stays on the spot, and a straight way beside it st
   for (int i = 0; i < 5; ++i) add(0, i, 0);
   for (int i = 1; i < 5; ++i) add(0.4 * i, 4, 0);
   for (int i = 1; i < 5; ++i) add(1.6, 4, i);
-  const Curve curve(poses);
+  const SplinedPoses curve(poses);
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const Pose middle = curve.spline.between(i).at(0.5);
     if (i >= 4 && i < 8) {
@@ -186,7 +187,7 @@ TEST_CASE("a turn on the spot stays on the spot, and a straight way beside it st
 TEST_CASE("two poses are joined by a straight line and one even turn") {
   const double angle = GENERATE(0.0, 1e-9, 1.0, 3.0, std::numbers::pi);
   const Vec3 axis{0, 0.6, 0.8};
-  const Curve curve({translation({1, 2, 3}), rotation(axis, angle, {3, 2, 3})});
+  const SplinedPoses curve({translation({1, 2, 3}), rotation(axis, angle, {3, 2, 3})});
   for (const double t : {0.25, 0.5, 0.75}) {
     const Pose pose = curve.spline.between(0).at(t);
     CHECK(distance(pose, translation({1 + 2 * t, 2, 3})) <= 1e-14);
@@ -199,8 +200,8 @@ TEST_CASE("two poses are joined by a straight line and one even turn") {
 
 TEST_CASE("stretches are interpolated beside rotations, mirrored poses among themselves") {
   const double sign = GENERATE(1.0, -1.0);
-  const Curve curve({stretched(translation({0, 0, 0}), {sign, 1, 1}),
-                     stretched(rotation({0, 0, 1}, 1, {5, 0, 0}), {3 * sign, 1, 1})});
+  const SplinedPoses curve({stretched(translation({0, 0, 0}), {sign, 1, 1}),
+                            stretched(rotation({0, 0, 1}, 1, {5, 0, 0}), {3 * sign, 1, 1})});
   const Pose middle = curve.spline.between(0).at(0.5);
   const Pose expected = stretched(rotation({0, 0, 1}, 0.5, {2.5, 0, 0}), {2 * sign, 1, 1});
   CHECK(rotation_distance(middle, expected) < 1e-14);

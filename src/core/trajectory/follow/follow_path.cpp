@@ -8,6 +8,7 @@
 #include "clearway/error.hpp"
 #include "core/geometry/angle.hpp"
 #include "core/messages/messages.hpp"
+#include "core/trajectory/eigen_pose.hpp"
 #include "core/trajectory/pose_ranges.hpp"
 #include "core/util/format.hpp"
 
@@ -27,10 +28,6 @@ constexpr double kLeastUp = 1e-6;
 
 Eigen::Vector3d as_eigen(const Vec3& v) { return {v.x, v.y, v.z}; }
 Vec3 as_vec3(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-
-Eigen::Vector3d position_of(const Pose& pose) {
-  return Eigen::Map<const Eigen::Vector3d>(pose.translation);
-}
 
 Eigen::Vector3d axis_of(const Pose& pose, int axis) {
   return Eigen::Map<const RowMajor>(pose.rotation).col(axis).normalized();

@@ -14,7 +14,7 @@ namespace clearway {
 namespace {
 
 /// Rounding of stations, in metres: of the sum of 1e6 ways, and of a station plus a distance.
-constexpr double kRounding = 1e-9;
+constexpr double kStationRounding = 1e-9;
 
 std::string two_poses(std::size_t from) {
   return "poses " + std::to_string(from) + " and " + std::to_string(from + 1) +
@@ -86,7 +86,8 @@ std::optional<PathStations::Place> PathStations::ahead_of(std::size_t i, double 
 }
 
 std::optional<PathStations::Place> PathStations::at_station(double station) const {
-  if (!(station >= -kRounding && station <= length() + kRounding)) return std::nullopt;
+  if (!(station >= -kStationRounding && station <= length() + kStationRounding))
+    return std::nullopt;
   const auto next = std::upper_bound(of_pose_.begin(), of_pose_.end(), station);
   if (next == of_pose_.begin()) return Place{0, 0};
   if (next == of_pose_.end()) return Place{poses_.size() - 1, 0};

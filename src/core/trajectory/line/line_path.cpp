@@ -30,7 +30,7 @@ void each_leg(std::span<const PlanPoint> vertices, const Visit& visit) {
 }
 
 /// Arcs that touch each other, as on a semicircle of two corners, may overlap by rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kArcRounding = 1e-9;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ std::vector<ShortLeg> short_legs(std::span<const PlanPoint> vertices, double rad
   std::vector<ShortLeg> found;
   each_leg(vertices, [&](std::size_t from, double length, double share) {
     const double needed = radius * share;
-    if (!(needed <= length * (1 + kRounding))) found.push_back({from, length, needed});
+    if (!(needed <= length * (1 + kArcRounding))) found.push_back({from, length, needed});
   });
   return found;
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "clearway/error.hpp"
-#include "core/trajectory/rotation_vector.hpp"
+#include "core/trajectory/eigen_pose.hpp"
 
 namespace clearway {
 namespace {

@@ -11,7 +11,7 @@
 namespace clearway {
 namespace {
 
-struct Place {
+struct PlanePlace {
   double x, y;
 };
 
@@ -21,7 +21,7 @@ Vec3 fan_normal(std::span<const Vec3> corners, std::size_t i) {
   return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
 }
 
-double length_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
+double norm_of(const Vec3& v) { return std::hypot(v.x, v.y, v.z); }
 
 /// The sum of the fan's normals, which does not depend on the order of the corners. Where they
 /// cancel because the outline crosses itself, the largest of them.
@@ -32,36 +32,36 @@ Vec3 polygon_normal(std::span<const Vec3> corners) {
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
     const Vec3 normal = fan_normal(corners, i);
     for (int k = 0; k < 3; ++k) sum[k] += normal[k];
-    lengths += length_of(normal);
-    if (length_of(normal) > length_of(largest)) largest = normal;
+    lengths += norm_of(normal);
+    if (norm_of(normal) > norm_of(largest)) largest = normal;
   }
-  return length_of(sum) > kCancelled * lengths ? sum : largest;
+  return norm_of(sum) > kCancelled * lengths ? sum : largest;
 }
 
 /// The corners projected along the normal's largest axis, counter-clockwise, relative to the first
 /// corner.
-std::vector<Place> projected(std::span<const Vec3> corners, const Vec3& normal) {
+std::vector<PlanePlace> projected(std::span<const Vec3> corners, const Vec3& normal) {
   int axis = 0;
   for (int k = 1; k < 3; ++k) {
     if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
   }
   const int u = (axis + 1) % 3, v = (axis + 2) % 3;
   const bool turned = normal[axis] < 0;
-  std::vector<Place> places;
+  std::vector<PlanePlace> places;
   places.reserve(corners.size());
   for (const Vec3& corner : corners) {
     const double x = corner[u] - corners[0][u], y = corner[v] - corners[0][v];
-    places.push_back(turned ? Place{y, x} : Place{x, y});
+    places.push_back(turned ? PlanePlace{y, x} : PlanePlace{x, y});
   }
   return places;
 }
 
 /// Twice the signed area of a, b, c: above 0 where they turn left.
-double turn(const Place& a, const Place& b, const Place& c) {
+double turn(const PlanePlace& a, const PlanePlace& b, const PlanePlace& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-bool is_fan(const std::vector<Place>& places) {
+bool is_fan(const std::vector<PlanePlace>& places) {
   for (std::size_t i = 1; i + 1 < places.size(); ++i) {
     if (!(turn(places[0], places[i], places[i + 1]) >= 0)) return false;
   }
@@ -69,12 +69,12 @@ bool is_fan(const std::vector<Place>& places) {
 }
 
 /// Whether two sides cross in the interior of both. Takes time quadratic in the number of corners.
-bool crosses_itself(const std::vector<Place>& places) {
+bool crosses_itself(const std::vector<PlanePlace>& places) {
   const std::size_t count = places.size();
   for (std::size_t i = 0; i + 2 < count; ++i) {
-    const Place &a = places[i], &b = places[i + 1];
+    const PlanePlace &a = places[i], &b = places[i + 1];
     for (std::size_t k = i + 2; k < count; ++k) {
-      const Place &c = places[k], &d = places[(k + 1) % count];
+      const PlanePlace &c = places[k], &d = places[(k + 1) % count];
       if (turn(a, b, c) * turn(a, b, d) < 0 && turn(c, d, a) * turn(c, d, b) < 0) return true;
     }
   }
@@ -82,7 +82,7 @@ bool crosses_itself(const std::vector<Place>& places) {
 }
 
 double bend_of(std::span<const Vec3> corners, const Vec3& normal) {
-  const double length = length_of(normal);
+  const double length = norm_of(normal);
   if (!(length > 0) || !std::isfinite(length)) return 0;
   Vec3 mean{0, 0, 0};
   const auto count = static_cast<double>(corners.size());
@@ -107,7 +107,7 @@ void cut_fan(std::size_t corners, CutPolygon& cut) {
 /// tested again, so the time is quadratic in the number of corners.
 class EarCutter {
  public:
-  explicit EarCutter(const std::vector<Place>& places) : places_(places) {
+  explicit EarCutter(const std::vector<PlanePlace>& places) : places_(places) {
     const auto count = static_cast<std::uint32_t>(places.size());
     for (std::uint32_t i = 0; i < count; ++i) {
       next_.push_back((i + 1) % count);
@@ -147,12 +147,12 @@ class EarCutter {
   }
 
   bool is_ear(std::uint32_t corner) const {
-    const Place& a = places_[before_[corner]];
-    const Place& b = places_[corner];
-    const Place& c = places_[next_[corner]];
+    const PlanePlace& a = places_[before_[corner]];
+    const PlanePlace& b = places_[corner];
+    const PlanePlace& c = places_[next_[corner]];
     if (!(turn(a, b, c) >= 0)) return false;
     for (std::uint32_t i = next_[next_[corner]]; i != before_[corner]; i = next_[i]) {
-      const Place& p = places_[i];
+      const PlanePlace& p = places_[i];
       const bool on_corner = same(p, a) || same(p, b) || same(p, c);
       if (!on_corner && turn(a, b, p) >= 0 && turn(b, c, p) >= 0 && turn(c, a, p) >= 0) {
         return false;
@@ -161,9 +161,9 @@ class EarCutter {
     return true;
   }
 
-  static bool same(const Place& a, const Place& b) { return a.x == b.x && a.y == b.y; }
+  static bool same(const PlanePlace& a, const PlanePlace& b) { return a.x == b.x && a.y == b.y; }
 
-  const std::vector<Place>& places_;
+  const std::vector<PlanePlace>& places_;
   std::vector<std::uint32_t> next_, before_;
   std::vector<bool> ear_;
 };
@@ -187,7 +187,7 @@ CutPolygon cut_polygon(std::span<const Vec3> corners) {
   }
   const Vec3 normal = polygon_normal(corners);
   cut.bend = bend_of(corners, normal);
-  const std::vector<Place> places = projected(corners, normal);
+  const std::vector<PlanePlace> places = projected(corners, normal);
   if (is_fan(places)) {
     cut_fan(corners.size(), cut);
     return cut;

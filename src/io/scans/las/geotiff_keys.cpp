@@ -108,7 +108,7 @@ struct Cited {
   double plane() const { return metres_of(units.plane); }
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_padding(std::string_view text) {
   while (text.starts_with(' ')) text.remove_prefix(1);
   while (text.ends_with(' ') || text.ends_with('\0')) text.remove_suffix(1);
   return text;
@@ -143,7 +143,7 @@ Cited read_citation(std::string_view text, bool of_heights) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
     const std::size_t equals = entry.substr(0, entry.find_first_of("[(")).find('=');
     if (equals != std::string_view::npos) entry.remove_prefix(equals + 1);
-    entry = trimmed(entry);
+    entry = without_padding(entry);
     const std::string_view first = entry.substr(0, entry.find(kAndHeights));
     if (entry.empty()) continue;
     if (read_system(entry, of_heights, out) || read_system(first, of_heights, out)) return out;

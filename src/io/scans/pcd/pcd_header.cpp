@@ -14,13 +14,13 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
-constexpr std::uint64_t kLargestPoint = std::uint64_t{1} << 16;   // bytes
-constexpr std::uint64_t kMostOfASide = 0xFFFFFFFF;                // greatest WIDTH and HEIGHT
+constexpr std::uint64_t kLongestPcdHeader = std::uint64_t{1} << 20;  // bytes
+constexpr std::uint64_t kLargestPoint = std::uint64_t{1} << 16;      // bytes
+constexpr std::uint64_t kMostOfAnAxis = 0xFFFFFFFF;                  // greatest WIDTH and HEIGHT
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(InputBuffer& input) : input_(input) {}
+  explicit PcdHeaderParser(InputBuffer& input) : input_(input) {}
 
   PcdHeader parse() {
     input_.begin_text();
@@ -43,7 +43,7 @@ class HeaderParser {
   void next() {
     do {
       std::string_view line;
-      if (input_.position() > kLongestHeader) fail("header longer than 1 MiB; expected DATA");
+      if (input_.position() > kLongestPcdHeader) fail("header longer than 1 MiB; expected DATA");
       if (!input_.next_line(line) || !input_.line_terminated()) {
         refuse(input_.name(), "ends at byte " + std::to_string(input_.position()) +
                                   " within the header; expected a line that starts with DATA");
@@ -155,7 +155,7 @@ class HeaderParser {
     if (height_ && !width_) fail("HEIGHT without WIDTH");
     const std::uint64_t width = width_.value_or(points_.value_or(0));
     header_.height = height_.value_or(1);
-    if (width > kMostOfASide || header_.height > kMostOfASide) {
+    if (width > kMostOfAnAxis || header_.height > kMostOfAnAxis) {
       fail("WIDTH or HEIGHT above 4294967295");
     }
     header_.points = points_.value_or(width * header_.height);
@@ -207,7 +207,7 @@ std::uint64_t PcdHeader::point_bytes(bool with_padding) const {
   return bytes;
 }
 
-PcdHeader read_pcd_header(InputBuffer& input) { return HeaderParser(input).parse(); }
+PcdHeader read_pcd_header(InputBuffer& input) { return PcdHeaderParser(input).parse(); }
 
 PcdLoad load_of(const PcdField& field) {
   constexpr PcdLoad kLoads[][3] = {

@@ -14,8 +14,8 @@
 namespace clearway {
 namespace {
 
-constexpr std::uint64_t kLongestHeader = std::uint64_t{1} << 20;  // bytes
-constexpr std::size_t kLargestElement = std::size_t{1} << 16;     // bytes
+constexpr std::uint64_t kLongestPlyHeader = std::uint64_t{1} << 20;  // bytes
+constexpr std::size_t kLargestElement = std::size_t{1} << 16;        // bytes
 
 /// The types by PlyType, with the name of 1994 and the later one.
 constexpr struct {
@@ -32,9 +32,9 @@ std::optional<PlyType> type_named(std::string_view name) {
   return std::nullopt;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(InputBuffer& input) : input_(input) {}
+  explicit PlyHeaderParser(InputBuffer& input) : input_(input) {}
 
   PlyHeader parse() {
     if (next() != std::vector<std::string_view>{"ply"}) fail("expected `ply`");
@@ -64,7 +64,8 @@ class HeaderParser {
 
   std::vector<std::string_view> next() {
     std::string_view line;
-    if (input_.position() > kLongestHeader) fail("header longer than 1 MiB; expected end_header");
+    if (input_.position() > kLongestPlyHeader)
+      fail("header longer than 1 MiB; expected end_header");
     if (!input_.next_line(line) || !input_.line_terminated()) {
       refuse(input_.name(), "ends at byte {} within the header; expected {}", input_.position(),
              input_.line() <= 1 ? "`ply`" : "`end_header`");
@@ -205,6 +206,6 @@ std::size_t PlyElement::least_bytes() const {
   return bytes;
 }
 
-PlyHeader read_ply_header(InputBuffer& input) { return HeaderParser(input).parse(); }
+PlyHeader read_ply_header(InputBuffer& input) { return PlyHeaderParser(input).parse(); }
 
 }  // namespace clearway

@@ -13,7 +13,7 @@
 namespace clearway {
 namespace {
 
-constexpr double kCentimetres = 100;  // centimetres in a metre
+constexpr double kCentimetresPerMetre = 100;
 constexpr std::size_t kFrameNumbers = 17;
 
 /// The axis of 3DTK that corresponds to each of Clearway's axes.
@@ -23,7 +23,8 @@ constexpr std::array<double, 3> kSign{1, -1, 1};
 }  // namespace
 
 Vec3 from_threedtk(const Vec3& point) {
-  return {point.z / kCentimetres, -point.x / kCentimetres, point.y / kCentimetres};
+  return {point.z / kCentimetresPerMetre, -point.x / kCentimetresPerMetre,
+          point.y / kCentimetresPerMetre};
 }
 
 std::array<double, 12> from_threedtk(const ThreedtkMatrix& matrix) {
@@ -32,7 +33,7 @@ std::array<double, 12> from_threedtk(const ThreedtkMatrix& matrix) {
     for (std::size_t column = 0; column < 3; ++column) {
       out[4 * row + column] = kSign[row] * kSign[column] * matrix[4 * kAxis[column] + kAxis[row]];
     }
-    out[4 * row + 3] = kSign[row] * matrix[12 + kAxis[row]] / kCentimetres;
+    out[4 * row + 3] = kSign[row] * matrix[12 + kAxis[row]] / kCentimetresPerMetre;
   }
   return out;
 }

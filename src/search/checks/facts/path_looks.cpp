@@ -37,9 +37,6 @@ constexpr double kScannerShadow = 1;
 /// Least width in metres of the column below a model in which points of the ground are looked for;
 /// it is wider than a model that is smaller than this.
 constexpr double kNarrowest = 1;
-/// Diagonal of a block of 64 points of a surface in units of the scan's spacing: such a block is 8
-/// spacings wide and 8 spacings high.
-constexpr double kSpacingsOfBlock = 11.3;
 
 /// A range of distances beside the model and the least height above the model's bottom, in metres.
 /// A ground that falls or rises across the path by 4 degrees stays below the bands.
@@ -152,9 +149,9 @@ class Looking {
       return true;
     });
     if (heights.size() < surely_below(inside, pose)) return std::nullopt;
-    constexpr std::size_t kLowest = 10;  // a tenth of the points lies lower
+    constexpr std::size_t kShareBelow = 10;  // a tenth of the points lies lower
     const auto surface =
-        heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) / kLowest);
+        heights.begin() + static_cast<std::ptrdiff_t>((heights.size() - 1) / kShareBelow);
     std::nth_element(heights.begin(), surface, heights.end());
     return (*surface - question_.model.lo.z) * scale_of(pose);
   }

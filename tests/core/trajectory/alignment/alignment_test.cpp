@@ -133,7 +133,6 @@ TEST_CASE("a ramp of cant tilts the way by the raise of the middle") {
 namespace {
 
 using Place = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 
 /// A place along an element that begins at 0 along x, and the angle there, in 25 digits by Fresnel
 /// integrals and by quadrature (mpmath).
@@ -168,7 +167,8 @@ void check_known(const Known (&known)[count], double length, double first, doubl
     for (const Known& place : known) {
       const PlanPlace found = plan.at(1000 + place.u);
       CHECK(std::abs(found.at - (start + std::polar(1.0, direction) * place.at)) < 2e-9);
-      CHECK(std::abs(std::remainder(found.heading - direction - place.angle, 2 * kPi)) < 1e-10);
+      CHECK(std::abs(std::remainder(found.heading - direction - place.angle,
+                                    2 * std::numbers::pi)) < 1e-10);
     }
   }
 }
@@ -181,7 +181,7 @@ TEST_CASE("a clothoid has the places that Fresnel integrals give") {
 }
 
 TEST_CASE("an arc has the places of its circle, also beyond a half circle") {
-  const double radius = 25, turn = 1.75 * kPi;
+  const double radius = 25, turn = 1.75 * std::numbers::pi;
   for (const double sense : {1.0, -1.0}) {
     const auto on_circle = [&](double angle) {
       return radius * Place(std::sin(angle), sense * (1 - std::cos(angle)));
@@ -191,7 +191,7 @@ TEST_CASE("an arc has the places of its circle, also beyond a half circle") {
     for (const double angle : {0.0, 0.1, 1.0, 3.0, 5.0, turn}) {
       const PlanPlace found = plan.at(radius * angle);
       CHECK(std::abs(found.at - on_circle(angle)) < 1e-12);
-      CHECK(std::abs(std::remainder(found.heading - sense * angle, 2 * kPi)) < 1e-13);
+      CHECK(std::abs(std::remainder(found.heading - sense * angle, 2 * std::numbers::pi)) < 1e-13);
     }
   }
 }
@@ -214,16 +214,16 @@ TEST_CASE("elements meet the places of the file though lengths and gaps do not q
 
 TEST_CASE("a station on a border belongs to the later element") {
   const AlignmentPlan plan({{10, 0, 0, {0, 0}, {10, 0}}, {10, 0, 0, {10, 0}, {10, 10}}}, 0);
-  CHECK(plan.at(10).heading == Approx(kPi / 2));
+  CHECK(plan.at(10).heading == Approx(std::numbers::pi / 2));
   check_equal(plan.at(10 - 1e-9).heading, 0);
-  CHECK(plan.kink_after(0) == Approx(kPi / 2));
+  CHECK(plan.kink_after(0) == Approx(std::numbers::pi / 2));
   check_equal(plan.station_of(1), 10);
 }
 
 TEST_CASE("a kink is counted across the half turn") {
   const auto ahead = [](double angle) { return std::polar(10.0, angle); };
-  const Place middle = ahead(kPi - 0.1);
-  const AlignmentPlan plan({{10, 0, 0, 0.0, middle}, {10, 0, 0, middle, middle + ahead(kPi + 0.2)}},
-                           0);
+  const Place middle = ahead(std::numbers::pi - 0.1);
+  const AlignmentPlan plan(
+      {{10, 0, 0, 0.0, middle}, {10, 0, 0, middle, middle + ahead(std::numbers::pi + 0.2)}}, 0);
   CHECK(plan.kink_after(0) == Approx(0.3));
 }

@@ -1,6 +1,7 @@
 #include "core/trajectory/follow/follow_path.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "clearway/error.hpp"
 #include "core/trajectory/paths.hpp"
@@ -12,15 +13,13 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// A path along a circle around the origin at a height of 5, turned about z beside its direction.
 std::vector<Pose> circle(double radius, double step, std::size_t count, double turned = 0) {
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < count; ++i) {
     const double angle = step * static_cast<double>(i) / radius;
-    poses.push_back(
-        headed(angle + kPi / 2 + turned, {radius * std::cos(angle), radius * std::sin(angle), 5}));
+    poses.push_back(headed(angle + std::numbers::pi / 2 + turned,
+                           {radius * std::cos(angle), radius * std::sin(angle), 5}));
   }
   return poses;
 }
@@ -125,7 +124,7 @@ TEST_CASE("a path that turns back folds the body, and has no chord where the piv
 }
 
 TEST_CASE("a path driven backwards takes its pivots the other way round") {
-  const auto backwards = circle(60, 0.1, 601, kPi);
+  const auto backwards = circle(60, 0.1, 601, std::numbers::pi);
   check_equal(codes(backwards, BodyPivots{5, -5}), "note body-off-path, body-turned");
   check_equal(codes(backwards, BodyPivots{-5, 5}), "note body-off-path");
   check_equal(codes(backwards, BodyStation{5}), "note body-off-path, body-turned");

@@ -20,7 +20,7 @@ using namespace clearway::test;
 namespace {
 
 /// Steps that are no part of 0.1 m, so that no height is just on the border of a window.
-constexpr Quantisation kSteps{{0.0007, 0.0007, 0.0007}, {0, 0, 0}};
+constexpr Quantisation kGroundSteps{{0.0007, 0.0007, 0.0007}, {0, 0, 0}};
 
 using Height = std::function<double(double x, double y)>;
 
@@ -115,14 +115,14 @@ struct Oracle {
 };
 
 MemoryCloud cloud_of(const std::vector<Vec3>& points) {
-  return {quantise(points, kSteps), kSteps, {.cell_points = 1024, .bucket_points = 0}};
+  return {quantise(points, kGroundSteps), kGroundSteps, {.cell_points = 1024, .bucket_points = 0}};
 }
 
 /// What is found, after it was compared with the oracle.
 GroundSide found_in(const std::vector<Vec3>& points, const std::vector<GroundPlace>& places,
                     double left) {
   const GroundSide side = find_ground(cloud_of(points), places, {.left = left, .metre = 1});
-  const Oracle oracle{positions_of(quantise(points, kSteps), kSteps)};
+  const Oracle oracle{positions_of(quantise(points, kGroundSteps), kGroundSteps)};
   const GroundSide expected = oracle.side(places, left);
   CHECK(side.places == expected.places);
   CHECK(side.risen == expected.risen);
@@ -220,7 +220,7 @@ TEST_CASE("a line that turns has its strips beside it") {
 TEST_CASE(
     "there is no ground without points, and damaged cells are refused only where they are read") {
   const std::vector<GroundPlace> places = places_along_x();
-  CHECK(find_ground(MemoryCloud({}, kSteps), places, {.left = 0.9}).places.empty());
+  CHECK(find_ground(MemoryCloud({}, kGroundSteps), places, {.left = 0.9}).places.empty());
   const auto points = surface([](double, double) { return 5.0; });
   std::size_t read = 0;
   const std::size_t cells = cloud_of(points).cells().size();

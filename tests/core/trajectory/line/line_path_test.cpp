@@ -14,12 +14,10 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 using Vertices = std::vector<PlanPoint>;
 
 /// The angle between two headings, from -pi to pi.
-double between(double a, double b) { return std::remainder(a - b, 2 * kPi); }
+double between(double a, double b) { return std::remainder(a - b, 2 * std::numbers::pi); }
 
 /// The greatest difference between the direction that a plan gives and that in which its places
 /// move, and the greatest difference between the way of a short step and its stations.
@@ -90,7 +88,7 @@ TEST_CASE("arcs that take whole legs make a circle of a square") {
   CHECK(largest_radius(square) == Approx(2).epsilon(1e-15));
   CHECK(short_legs(square, 2).empty());
   const LinePlan plan = LinePlan::rounded(square, 2);
-  CHECK(plan.length() == Approx(4 * kPi).epsilon(1e-14));
+  CHECK(plan.length() == Approx(4 * std::numbers::pi).epsilon(1e-14));
   for (int i = 0; i <= 40; ++i) {
     const double s = plan.length() * i / 40;
     CHECK(std::abs(std::abs(plan.at(s).at - PlanPoint(2, 2)) - 2) < 1e-13);
@@ -118,20 +116,22 @@ TEST_CASE("a curve through the places of a circle is nearly that circle") {
   for (const int count : {36, 72, 144}) {
     constexpr double kRadius = 20;
     Vertices circle;
-    for (int i = 0; i <= count; ++i) circle.push_back(std::polar(kRadius, 2 * kPi * i / count));
+    for (int i = 0; i <= count; ++i)
+      circle.push_back(std::polar(kRadius, 2 * std::numbers::pi * i / count));
     const LinePlan plan = LinePlan::through(circle);
     double away = 0, heading = 0;
     for (int i = 0; i <= 2000; ++i) {
       const PlanPlace place = plan.at(plan.length() * i / 2000);
       away = std::max(away, std::abs(std::abs(place.at) - kRadius));
-      heading = std::max(heading, std::abs(between(place.heading, std::arg(place.at) + kPi / 2)));
+      heading = std::max(
+          heading, std::abs(between(place.heading, std::arg(place.at) + std::numbers::pi / 2)));
     }
-    const double apart = 2 * kPi / count;
+    const double apart = 2 * std::numbers::pi / count;
     CHECK(away < kRadius * std::pow(apart, 4) / 31);
     CHECK(heading < std::pow(apart, 3) / 3.9);
     if (before > 0) CHECK(away < before / 15);
     before = away;
-    CHECK(plan.length() == Approx(2 * kPi * kRadius).epsilon(2e-5));
+    CHECK(plan.length() == Approx(2 * std::numbers::pi * kRadius).epsilon(2e-5));
   }
 }
 
@@ -191,7 +191,7 @@ TEST_CASE("slopes of a line with corners are joined by parabolas as long as the 
   const LinePlan plan = LinePlan::rounded(vertices, 10);
   const std::vector<double> heights{1, 3, 2};
   const AlignmentProfile profile = rounded_profile(plan, heights, 10);
-  const double middle = plan.station_of(1), half = 5 * kPi / 2;
+  const double middle = plan.station_of(1), half = 5 * std::numbers::pi / 2;
   const double g1 = 2 / middle, g2 = -1 / (plan.length() - middle);
   check_equal(profile.at(0).value, 1);
   CHECK(profile.at(10).value == Approx(1 + 10 * g1).epsilon(1e-14));

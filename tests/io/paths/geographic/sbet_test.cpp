@@ -15,8 +15,6 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 struct Read : MadePath {
   const Message* find(const std::string& code) const {
     const auto found = std::ranges::find(remarks, code, &Message::code);
@@ -59,7 +57,7 @@ TEST_CASE("SBET: attitude by wander angle and meridian convergence") {
   for (int i = 0; i < 40; ++i) {
     record.roll = 0.3 * std::sin(i);
     record.pitch = 0.2 * std::cos(3.0 * i);
-    record.heading = std::remainder(0.7 * i, 2 * kPi);
+    record.heading = std::remainder(0.7 * i, 2 * std::numbers::pi);
     record.wander = 0.4 * std::cos(i);
     const Read found = read_sbet(record.bytes());
     const double on_map = record.heading - record.wander - kConvergence;

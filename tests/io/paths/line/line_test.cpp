@@ -16,8 +16,6 @@ using namespace clearway::test;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 MadePath made_of(const std::string& text, const LineOptions& options = {}) {
   const ScratchFolder scratch;
   MadePath made;
@@ -163,8 +161,9 @@ TEST_CASE("vertices that stand twice in a row are left out") {
 
 TEST_CASE("vertices that turn by more than 15 degrees need arcs") {
   const auto bent = [](double degrees) {
-    return "x,y\n0,0\n50,0\n" + std::to_string(50 + 50 * std::cos(degrees * kPi / 180)) + "," +
-           std::to_string(50 * std::sin(degrees * kPi / 180)) + "\n";
+    return "x,y\n0,0\n50,0\n" +
+           std::to_string(50 + 50 * std::cos(degrees * std::numbers::pi / 180)) + "," +
+           std::to_string(50 * std::sin(degrees * std::numbers::pi / 180)) + "\n";
   };
   CHECK(made_of(bent(14.99), {.height = 0}).poses.size() > 1000);
   CHECK(made_of(bent(-14.99), {.height = 0}).poses.size() > 1000);
@@ -203,7 +202,7 @@ TEST_CASE("stations of vertices become those of poses") {
   check_equal(back.labels.station, {0, 5, 10, 15, 20});
   // The station of a vertex that is rounded stands in the middle of its arc.
   const MadePath corner = made_of("x,y,chainage\n0,0,0\n10,0,10\n10,10,20\n",
-                                  {.step = 6 + kPi, .height = 0, .corner_radius = 4});
+                                  {.step = 6 + std::numbers::pi, .height = 0, .corner_radius = 4});
   REQUIRE(corner.labels.station.size() == 3);
   CHECK(corner.labels.station[1] == Approx(10));
   check_remarks(R"(
@@ -371,8 +370,8 @@ TEST_CASE("what is odd about a line is said with numbers") {
   // A circle of 20 m, closed, in legs of 3.5 m, that leave it by 76 mm.
   std::string circle = "x,y\n";
   for (int i = 0; i < 36; ++i) {
-    circle += std::to_string(20 * std::cos(i * kPi / 18)) + "," +
-              std::to_string(20 * std::sin(i * kPi / 18)) + "\n";
+    circle += std::to_string(20 * std::cos(i * std::numbers::pi / 18)) + "," +
+              std::to_string(20 * std::sin(i * std::numbers::pi / 18)) + "\n";
   }
   circle += "20.000000,0.000000\n";
   const MadePath closed = made_of(circle, {.height = 0});

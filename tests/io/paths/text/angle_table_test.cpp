@@ -23,7 +23,7 @@ void check_turn(const Pose& pose, const Rotation& expected) {
 }
 
 const std::string kHead = "x,y,z,roll_deg,pitch_deg,heading_deg\n";
-const TrajectoryOptions kUtm32{.crs = "EPSG:32632"};
+const TrajectoryOptions kInUtm32{.crs = "EPSG:32632"};
 
 }  // namespace
 
@@ -104,28 +104,28 @@ TEST_CASE("latitude and longitude in a table") {
     lat,lon,height,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n
     lon_rad,lat_rad,alt_m,roll_deg,pitch_deg,heading_deg\n0.15707963267948966,0.83775804095727813,12.5,0,0,90\n
   )")) {
-    const Pose pose = pose_of_table(row[0], kUtm32);
+    const Pose pose = pose_of_table(row[0], kInUtm32);
     check_near(pose.translation[0], 500000, 1e-6);
     check_near(pose.translation[1], 5316300.2245, 1e-3);
     check_equal(pose.translation[2], 12.5);
     CHECK(pose.rotation[0] == Approx(1));
   }
   // A yaw from true east turns with the map as a heading from true north does.
-  TrajectoryOptions yaw = kUtm32;
+  TrajectoryOptions yaw = kInUtm32;
   yaw.angle_frame = AngleFrame::kEnu;
   const Pose a = pose_of_table("lat,lon,z,roll_deg,pitch_deg,yaw_deg\n48,11,0,2,-3,20\n", yaw);
   const Pose b =
-      pose_of_table("lat,lon,height,roll_deg,pitch_deg,heading_deg\n48,11,0,2,3,70\n", kUtm32);
+      pose_of_table("lat,lon,height,roll_deg,pitch_deg,heading_deg\n48,11,0,2,3,70\n", kInUtm32);
   for (int k = 0; k < 9; ++k) check_near(a.rotation[k], b.rotation[k], 1e-12);
   const std::string_view unnamed =
       R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | coordinate reference system)";
   check_paths_refused(unnamed, {}, Remedy::kNameCrs);
   check_paths_refused(R"(lat,lon,z,roll_deg,pitch_deg,heading_deg\n1,0.5,9,0,0,90\n | lat_deg)",
-                      kUtm32, Remedy::kDeclareAngles);
+                      kInUtm32, Remedy::kDeclareAngles);
   check_paths_refused(R"(
     lat,lon,z,roll_deg,pitch_deg,heading_deg\n98,9,12.5,0,0,90\n         | within 90 degrees
     lat_rad,lon_rad,z,roll_deg,pitch_deg,heading_deg\n48,9,12.5,0,0,90\n | look like degrees
   )",
-                      kUtm32, Remedy::kNone);
-  CHECK_THROWS_AS(read_path(kHead + "1,2,3,0,0,0\n", kUtm32), UsageError);
+                      kInUtm32, Remedy::kNone);
+  CHECK_THROWS_AS(read_path(kHead + "1,2,3,0,0,0\n", kInUtm32), UsageError);
 }

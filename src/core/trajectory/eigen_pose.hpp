@@ -3,7 +3,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "clearway/pose.hpp"
+
 namespace clearway {
+
+inline Eigen::Vector3d position_of(const Pose& pose) {
+  return Eigen::Map<const Eigen::Vector3d>(pose.translation);
+}
 
 /// The rotation by a rotation vector, in radians.
 inline Eigen::Quaterniond exponential(const Eigen::Vector3d& turn) {
