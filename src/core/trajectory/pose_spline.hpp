@@ -59,8 +59,12 @@ class PoseCurve {
 
 /// A curve through all poses of a trajectory with continuous velocity, in position and rotation.
 /// Each way depends on two poses to either side of it. Stretching, which is what a pose has besides
-/// a rotation, is interpolated by itself. Sources: Kim, Kim and Shin 1995 (rotation), Lee 1989
-/// (parametrisation), Fritsch and Carlson 1980 (limit of velocities), Shoemake and Duff 1992
+/// a rotation, is interpolated by itself. Sources: M.-J. Kim, M.-S. Kim, S. Y. Shin, A general
+/// construction scheme for unit quaternion curves, SIGGRAPH 1995 (rotation). E. T. Y. Lee, Choosing
+/// nodes in parametric curve interpolation, Computer-Aided Design 21, 1989 (parametrisation).
+/// C. de Boor, A practical guide to splines, 1978 (velocities, knots). F. N. Fritsch, R. E. Carlson,
+/// Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17, 1980 (limit of velocities).
+/// K. Shoemake, T. Duff, Matrix animation and polar decomposition, Graphics Interface 1992
 /// (stretching).
 class PoseSpline {
  public:
