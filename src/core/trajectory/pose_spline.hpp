@@ -62,10 +62,10 @@ class PoseCurve {
 /// a rotation, is interpolated by itself. Sources: M.-J. Kim, M.-S. Kim, S. Y. Shin, A general
 /// construction scheme for unit quaternion curves, SIGGRAPH 1995 (rotation). E. T. Y. Lee, Choosing
 /// nodes in parametric curve interpolation, Computer-Aided Design 21, 1989 (parametrisation).
-/// C. de Boor, A practical guide to splines, 1978 (velocities, knots). F. N. Fritsch, R. E. Carlson,
-/// Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17, 1980 (limit of velocities).
-/// K. Shoemake, T. Duff, Matrix animation and polar decomposition, Graphics Interface 1992
-/// (stretching).
+/// C. de Boor, A practical guide to splines, 1978 (velocities, knots). F. N. Fritsch, R. E.
+/// Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17, 1980 (limit of
+/// velocities). K. Shoemake, T. Duff, Matrix animation and polar decomposition, Graphics Interface
+/// 1992 (stretching).
 class PoseSpline {
  public:
   /// poses: invertible; they must outlive the spline. motions: how far the model moves from each

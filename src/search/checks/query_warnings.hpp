@@ -24,8 +24,8 @@ struct BodyMessages {
 
 /// Adds what was found to the log, with the names of the bodies, and once where several have it in
 /// common. A warning that the ground, or what is beside the path, is missing is given for the
-/// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given. One
-/// about a stretch of the path is given where it holds for any body: that of the body with the
+/// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
+/// One about a stretch of the path is given where it holds for any body: that of the body with the
 /// longest stretch, with the stretches of all bodies.
 void warn_of_bodies_once(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
