@@ -15,7 +15,7 @@
 namespace clearway {
 
 /// The points of a cloud that are free: that do not collide, with a floor or without it, and are
-/// not ignored (docs/design/depth.md). Knows for each node of the tree whether it has any.
+/// not ignored (docs/design/pipeline.md). Knows for each node of the tree whether it has any.
 class FreePoints {
  public:
   /// The tree must outlive this object. cells: those in which points may not be free, each once; of

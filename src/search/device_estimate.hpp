@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// A triangle takes as long to search as this many points (docs/design/surfaces.md).
+/// A triangle takes as long to search as this many points (docs/design/model.md).
 inline constexpr std::uint64_t kPointsOfTriangle = 10;
 
 /// The model points that a search takes as long for as for this model. points: the vertices.
