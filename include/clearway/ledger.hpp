@@ -19,7 +19,7 @@
 namespace clearway {
 
 /// What a ledger says of a row or of a conflict. Its table has the first four; the others are found
-/// in each run (docs/design/ledger.md).
+/// in each run (docs/design/findings.md).
 enum class LedgerStatus {
   kNew,       ///< no row knew the conflict, or nobody has decided about its row yet
   kOpen,      ///< somebody has to act

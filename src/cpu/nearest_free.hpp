@@ -15,7 +15,7 @@
 namespace clearway {
 
 /// The points of a cloud that are free: that do not collide, with a floor or without it, and are
-/// not ignored (docs/design/depth.md). Knows for each node of the tree whether it has any.
+/// not ignored (docs/design/pipeline.md). Knows for each node of the tree whether it has any.
 class FreePoints {
  public:
   /// The tree must outlive this object. cells: those in which points may not be free, each once; of
@@ -70,7 +70,10 @@ class FreePoints {
 };
 
 /// Finds the nearest free points of the points of one block after another, by branch and bound over
-/// the tree, best first. For one thread.
+/// the tree, best first, until no node is nearer than the farthest nearest point so far. No slack
+/// is needed, because least_squared_distance() of a box rounds as d2 does and monotonically
+/// (docs/design/numerics.md, "Boxes"). Nodes at exactly the least distance are searched too, since
+/// the smallest source decides there, so no order of work changes an answer. For one thread.
 class NearestFree {
  public:
   /// Both must outlive this object.

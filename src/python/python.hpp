@@ -18,7 +18,9 @@
 
 /// What the parts of the Python module have in common. They add no logic to the library: they
 /// convert between Python's values and the library's, and let other Python threads run while the
-/// library works.
+/// library works. None stands for what was not asked for and an empty array for what was not found,
+/// so that an absent clearance never looks like a free way. What NumPy would convert in silence is
+/// refused where it hides a mistake.
 namespace clearway::python {
 
 namespace py = pybind11;

@@ -28,7 +28,8 @@ struct KeptProgress {
 /// only the calling thread runs Python: every 50 ms it passes what is new to the callbacks, looks
 /// at the stop flag, and lets Python handle signals, so that Ctrl-C raises KeyboardInterrupt. An
 /// exception that is raised there stops the work; once the work has ended in order, the
-/// exception leaves run().
+/// exception leaves run(). The threads of OpenMP belong to the thread of the work and end with it,
+/// so that a process may search after fork().
 class Watch {
  public:
   /// given: the arguments of the call, of which `progress` and `message` are callables or None, and

@@ -39,14 +39,15 @@ PagePoint page_point(const PageLattice& lattice, const Vec3& xyz, std::uint8_t t
 /// are small. The order depends only on the points.
 void sort_along_curve(std::vector<PagePoint>& points);
 
-/// A column of the page: the bytes that the browser reads, which write_page() compresses.
-/// docs/design/report.md describes the layout.
+/// A column of the page: the bytes that the browser reads, which write_page() compresses. Integers
+/// are delta_planes(), tags and texts plain bytes.
 struct PageColumn {
   std::string name;
   std::string bytes;
 };
 
-/// The differences of consecutive values, zigzag-encoded, in four planes of bytes.
+/// The differences of consecutive values, from 0 on, zigzag-encoded (0, -1, 1, -2 become 0, 1, 2,
+/// 3), in four planes of bytes, the lowest first.
 std::string delta_planes(std::span<const std::int32_t> values);
 
 /// Appends the columns NAME.x, NAME.y, NAME.z and NAME.tag.

@@ -81,7 +81,13 @@ class SectionView {
   const SectionCells& not_known() const;
   /// The object "section" of the page's facts.
   Json facts() const;
-  /// The columns that the page draws from. docs/design/report.md describes them.
+  /// The columns that the page draws from: the chainage of each pose in millimetres; as bits, the
+  /// cells of the window, row by row, that are blocked anywhere (whole), and those that stop a load
+  /// where it is judged, for several loads followed by those that stop each of them (stops); the
+  /// first pose of each blocked cell (first); as bits, the cells of each stretch with a pose that
+  /// are blocked (cells), and those that are not known (unknown), unless there are too many; and
+  /// for each stretch, and last the whole path, the widths of the bands in cells, -1 where open,
+  /// with their poses (left, right, left_pose, right_pose).
   void add_columns(std::vector<PageColumn>& columns) const;
 
  private:

@@ -16,7 +16,7 @@
 namespace clearway {
 
 /// What a store of points near a path can answer: nothing that a point could change which it left
-/// out (docs/design/corridor.md). For a store of all points, every question passes.
+/// out (docs/design/pipeline.md). For a store of all points, every question passes.
 class CorridorCheck {
  public:
   explicit CorridorCheck(const StoreMetadata& store);

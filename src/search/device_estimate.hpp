@@ -12,7 +12,7 @@
 
 namespace clearway {
 
-/// A triangle takes as long to search as this many points (docs/design/surfaces.md).
+/// A triangle takes as long to search as this many points (docs/design/model.md).
 inline constexpr std::uint64_t kPointsOfTriangle = 10;
 
 /// The model points that a search takes as long for as for this model. points: the vertices.
@@ -46,7 +46,6 @@ Workload workload_of(const PackedCloud& cloud, const QueryParameters& query, con
 /// including its start and end, with engine sweep and the time to read model and poses and to write
 /// a small result. work: one for the model, or one for each body. threads: at least 1. started:
 /// whether the GPU was started before. Used for choosing, never for answers.
-/// docs/design/pipeline.md says how its constants are measured.
 DeviceEstimate estimate_devices(std::span<const Workload> work, const QueryParameters& query,
                                 int threads, bool started = false);
 

@@ -10,7 +10,7 @@
 namespace clearway {
 
 /// Finds for each colliding point of `rows` the nearest free point of the store, and the distance
-/// to it (docs/design/depth.md), and adds them to `rows`, cell by cell, except where these are
+/// to it (docs/design/pipeline.md), and adds them to `rows`, cell by cell, except where these are
 /// known. query: says which points are ignored. threads: at least 1; fewer are used where
 /// memory_bytes are short. The depths depend neither on threads nor on memory. Throws ResourceError
 /// whose amount is the memory that would do, InputError for a damaged cell, Interrupted. Returns

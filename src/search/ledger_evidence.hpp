@@ -15,7 +15,7 @@
 namespace clearway {
 
 /// Finds out whether a run would have found what was at some places, and shows so that nothing is
-/// there any more (docs/design/ledger.md, "Gone").
+/// there any more (docs/design/findings.md, "Gone").
 class LedgerEvidence {
  public:
   /// found: the result and its poses. find: with the model or bodies. options: with the store. All

@@ -21,10 +21,6 @@ NOT_RUN = {
     ("docs/guide/library.md", "cmake"): "builds the library; the test installed_library installs it",
     ("docs/guide/measuring.md", "tools/evaluate.sh"): "measures for minutes",
     ("docs/guide/measuring.md", "tools/experiments.py"): "makes scenes of 800 million points",
-    ("docs/guide/python.md", "tools/package.sh"): "makes the packages; tools/test_package.sh does",
-    ("docs/guide/python.md", "sudo"): "installs the package; tools/test_package.sh does",
-    ("docs/guide/python.md", "pip"): "installs the wheel; tools/test_package.sh does",
-    ("docs/guide/python.md", "cmake"): "builds the program",
     ("docs/guide/python.md", "clearway scene"): "the test python_guide runs it, with the page's snippets",
     ("docs/guide/whatif.md", "clearway scene"): "the test python_whatif runs it, with the page's snippets",
 }
@@ -60,7 +56,6 @@ WRITTEN = {
 # (page, beginning of the command): the exit code, where it is not 0.
 EXIT_CODES = {
     ("README.md", "clearway compare"): 1,
-    ("docs/guide/tutorial.md", "clearway compare"): 1,
     ("docs/guide/command-line.md", "clearway compare before.h5"): 1,
     ("docs/guide/section.md", "clearway section check section.h5 --table"): 1,
     ("docs/guide/results.md", "clearway compare before.h5"): 1,

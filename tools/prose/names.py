@@ -14,10 +14,6 @@ CALL = re.compile(r"((?:\w+(?:::|\.))*~?\w+)\((?:[^()]|\([^()]*\))*\)")
 WORD = re.compile(r"[A-Za-z_]\w*")
 PLACEHOLDER = re.compile(r"\bNAME(?=\b|_)|^DIR/")  # NAME_reader.hpp, DIR/index.html
 
-# Where a document says where facts are from, it names files of other projects.
-FOREIGN = {"docs/design/laz.md": {"laszip.cpp", "lasreadpoint.cpp", "lasreaditemcompressed_v1.cpp",
-                                  "_v4.cpp"}}
-
 NAME_OF = re.compile(r"\bname_of\((\w+) \w+\) \{\n(.*?)\n\}", re.DOTALL)
 TEXT = re.compile(r'"((?:[^"\\\n]|\\.)*)"')
 LITERAL = re.compile(r'"(?:[^"\\\n]|\\.)*"(?:\s*"(?:[^"\\\n]|\\.)*")*|R"\((.*?)\)"', re.DOTALL)
@@ -51,7 +47,7 @@ class Names:
         """The code spans of a document whose names no source has."""
         for block in blocks:
             for line, code in markdown.code_spans(block):
-                if not self._is_known(code.strip()) and code not in FOREIGN.get(name, ()):
+                if not self._is_known(code.strip()):
                     yield f"{name}:{line}: {code}: no source has this name"
 
     def _is_known(self, code):

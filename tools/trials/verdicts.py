@@ -26,7 +26,7 @@ class Errors:
                 "error_pose": self.pose, "error_angle": self.angle}
 
     def margins(self, shape, sigmas):
-        """U_clear and U_conflict as docs/design/verdict.md defines them, of points whose step is
+        """U_clear and U_conflict as docs/design/findings.md defines them, of points whose step is
         QUANTUM and a model that stands still."""
         hard = np.sqrt(3) * QUANTUM / 2
         lever = np.linalg.norm(shape.vertices(), axis=1).max()

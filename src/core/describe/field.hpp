@@ -5,8 +5,17 @@
 #include <tuple>
 #include <type_traits>
 
-/// What a field of a public struct is, for everything that shows, reads or keeps it: results, JSON,
-/// campaigns, the command line and its guide, and Python. docs/design/describe.md shows the flow.
+/// What a field of a public struct is, said once, in a list of this folder, for everything that
+/// shows, reads or keeps it. From an entry are made
+/// - options and their help (tools/cli/support/field_options.hpp), and from the help the tables of
+///   the guide, manual pages and completion (tools/option_tables.py, man_pages.py, completion.py),
+/// - keys of campaigns (src/campaign/campaign_file.cpp) and checks of a query (check_query.cpp),
+/// - facts of results (src/io/result), their comparison, and the identity of a journal,
+/// - JSON (src/io/files/facts_json.hpp), the files of findings (conflict_fields.hpp) with their
+///   tables in the guide, and the facts of pages (src/report/report_facts.cpp),
+/// - properties, arguments, docstrings and the stub of Python (src/python/binding.hpp).
+/// An option that sets several members or reads another file, and which options exclude each other,
+/// is code.
 namespace clearway {
 
 /// The groups of options in a help text, in the order in which it shows them.

@@ -14,7 +14,7 @@ inline constexpr double kNoFloor = -std::numeric_limits<double>::infinity();
 
 /// Whether e counts at a pose: its height in the body's frame there is at least that of the floor.
 /// This is the only place that decides it; everything faster is a filter
-/// (docs/design/floor.md).
+/// (docs/design/sweep.md).
 CLEARWAY_HD inline bool is_above_floor(const Pose& pose, const Vec3& e, double floor) {
   return floor == kNoFloor || pulled_back(pose, e).z >= floor;
 }

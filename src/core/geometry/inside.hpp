@@ -6,7 +6,7 @@
 #include "core/geometry/triangle.hpp"
 
 /// Decides the sign of a distance: whether the surface of a solid winds around a place of the
-/// model's frame (docs/design/solids.md, "The definition"). The result is the same on host and
+/// model's frame (docs/design/model.md, "The definition"). The result is the same on host and
 /// device.
 namespace clearway {
 

@@ -24,7 +24,7 @@ std::optional<QuantumBox> quanta_in(const Quantisation& quantisation, const Box&
 /// questions have equal lists.
 void sort_ignored(QueryParameters& query);
 
-/// Knows which points of a cloud a query leaves out of the search (docs/design/ignored.md).
+/// Knows which points of a cloud a query leaves out of the search (docs/design/pipeline.md).
 class IgnoredPoints {
  public:
   /// The points to be searched: all but the ignored ones, or only the ignored ones. kBoth: masks

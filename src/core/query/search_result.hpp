@@ -15,7 +15,7 @@
 namespace clearway {
 
 /// The distance that belongs to a squared distance; both are below 0 inside solids
-/// (docs/design/solids.md).
+/// (docs/design/model.md).
 inline double signed_root(double squared) {
   return squared < 0 ? -std::sqrt(-squared) : std::sqrt(squared);
 }
@@ -125,7 +125,7 @@ class LastPoses {
   std::uint32_t ways_;  ///< 1 if a pose stands for the way from it to the next, otherwise 0
 };
 
-/// The free point that is nearest to a colliding one (docs/design/depth.md).
+/// The free point that is nearest to a colliding one (docs/design/pipeline.md).
 struct Depth {
   static constexpr std::uint64_t kNoPoint = ~std::uint64_t{0};
   double distance = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN if none is free

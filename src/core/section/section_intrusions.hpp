@@ -27,6 +27,13 @@ std::vector<bool> stopping_cells(const Section& section, std::span<const Outline
 std::size_t index_of_cell(const SectionCells& cells, std::int32_t j, std::int32_t k);
 
 /// Fills the intrusions of the stops, which are ascending by bin. stops_load: stopping_cells().
+///
+/// A cell j, k of the side g takes from the left the greatest y of the outline in the strip of z
+/// from k g - reach to (k + 1) g + reach, less (j g - reach), and from the other sides likewise. It
+/// counts on the side where it takes least, and a side takes the greatest of its cells. The set of
+/// sides that is reported has the least sum among those that leave something of the outline's box
+/// both across and up, and of equal sums the fewest sides; without any it is left and right. A
+/// rectangle that is cut back by these depths is nowhere closer than reach to a cell of the bin.
 void find_intrusions(const Section& section, std::span<const OutlinePoint> outline, double reach,
                      const std::vector<bool>& stops_load, std::vector<SectionStop>& stops);
 

@@ -9,6 +9,14 @@
 
 /// Which pose is the first to block each cell, and a pyramid over it that dismisses rectangles of
 /// cells that are blocked early enough.
+///
+/// Several threads of a CPU or a GPU may share a map. First poses only fall, by an atomic minimum,
+/// and nothing orders other reads and writes. That is enough: a first pose that is read is an upper
+/// bound of its final value, and so is every value of an entry of the pyramid for all cells below
+/// it, because an entry begins as kNotBlocked and is only ever lowered to the greatest of its 16
+/// children as they were read. So a rectangle is dismissed only where the final map answers for it,
+/// and any other pair of a point and a pose is computed exactly and lowers the map. No cell ends
+/// later than the definition says, and since only computed places write, none ends earlier.
 namespace clearway {
 
 /// The entry of a cell that nothing blocks.

@@ -45,8 +45,27 @@ struct PlaceBounds {
   std::uint32_t first_in_range;
 };
 
-/// Consecutive poses of the load, and a bound on each axis of where they see a point
-/// (docs/design/section.md, "The bound").
+/// Consecutive poses of the load, and a bound on each axis of where they see a point.
+///
+/// The node has a reference pose with the inverse R' and the position p'. For each axis a and each
+/// pose i of the node
+///   x'_a = R'_a (e - p') + (R_i^-1 - R')_a (e - p') - (R_i^-1)_a (p_i - p').
+/// The first term is that of one pose. The second is at most D_a . |e - p'|, where D_a (`spread`)
+/// holds the greatest change of each entry of the row. The third does not depend on the point: the
+/// node stores its least and its greatest value. A box of points with the middle c and the half
+/// sides h adds |R'_a| . h to the first term and has |c - p'| + h in the second. So a straight
+/// piece of path moves places along x' only, and y' and z' stay as narrow as the points are. Each
+/// bound is widened by section_rounding(), which is more than the rounding of both the bound and
+/// the place. Cells are monotone in the place, so the cells under the widened bound hold the cell
+/// of every point at every pose.
+///
+/// The node also bounds when a point comes into the range, because a load moves on by about as much
+/// from pose to pose. With v, the mean fall of x' from a pose to the next, the third term of x' at
+/// pose i of the node is at least c - v i, where c is the least of the third term plus v i. So
+/// where v is above 0, no pose before
+///   ((R'_x (e - p') - D_x . |e - p'| - eps) + c - x_to) / v
+/// has the point in the range; a load that goes backwards has the mirror image of this at x_from.
+/// The number is rounded down, and eps is more than what its terms are rounded by, whatever v is.
 struct SectionPoseNode {
   static constexpr std::uint32_t kManyBins = 0xffffffff;
 

@@ -40,9 +40,12 @@ std::optional<double> symmetric_width(const SectionFacts& section, const Section
 /// The height at which the first band begins. Throws UsageError where it is below the window.
 double section_base(const Section& section, const SectionHeights& heights);
 
-/// The bands that lie in the window, from the base upwards. Throws UsageError where the section is
-/// in doubt, the window lacks the middle or has no whole band, or the base is below the window, and
-/// for heights that are not finite or not above 0.
+/// The bands that lie in the window, from the base upwards. A band has the cells that have more
+/// than a millionth of a cell's side of its height. Its left is the least j g of those of them with
+/// j >= 0 that are blocked or not known, with the side g of a cell, and its right the least of
+/// -(j + 1) g of those with j < 0. Throws UsageError where the section is in doubt, the window
+/// lacks the middle or has no whole band, or the base is below the window, and for heights that are
+/// not finite or not above 0.
 std::vector<SectionBand> section_bands(const Section& section, const SectionHeights& heights);
 
 /// The bands of each bin in which the load has a pose, ascending. Throws as section_bands().

@@ -10,7 +10,7 @@
 namespace clearway {
 
 /// The places within a distance of a path, which consists of the segments between consecutive
-/// positions; of a single position, where there is only one (docs/design/corridor.md).
+/// positions; of a single position, where there is only one (docs/design/pipeline.md).
 class Corridor {
  public:
   /// path: finite positions, at least one. within: finite, 0 or above.

@@ -7,7 +7,12 @@
 
 namespace clearway {
 
-/// How level the poses of every node of a motion tree are, for queries with a floor.
+/// How level the poses of every node of a motion tree are, for queries with a floor. With a, the
+/// third row of the inverse rotation, and the position p of a pose, the height of e in the body's
+/// frame is a . (e - p), hence
+///   z_i(e) - z_mid(e) = (a_i - a_mid) . (e - p_mid) + a_i . (p_mid - p_i),
+/// which is at most tilt |e - p_mid| + rise. Neither grows with the way that the vehicle travels on
+/// level ground.
 class MotionFloors {
  public:
   MotionFloors() = default;

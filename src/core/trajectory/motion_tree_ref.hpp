@@ -54,7 +54,7 @@ struct MotionCurve {
 
 /// How far the height of a place in the body's frame may change over the poses of a node: by at
 /// most tilt times the place's distance from the middle pose's position, plus rise
-/// (docs/design/floor.md). Between poses that includes the pose after the range.
+/// (docs/design/sweep.md). Between poses that includes the pose after the range.
 struct MotionFloor {
   double tilt = 0;  ///< change of the third row of the inverse rotation
   double rise = 0;  ///< metres

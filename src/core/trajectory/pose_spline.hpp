@@ -32,8 +32,16 @@ class PositionCurve {
   std::array<Eigen::Vector3d, 3> moves_;  ///< metres
 };
 
-/// The curve from one pose to the next: a cubic in position, a cumulative cubic in rotation
-/// (docs/design/trajectory.md).
+/// The curve from pose i to the next: a cubic in position, a cumulative cubic in rotation. With the
+/// cumulative Bernstein polynomials b_1 = 1 - (1 - t)^3, b_2 = 3 t^2 - 2 t^3 and b_3 = t^3
+///   p(t) = p_i + b_1 a_1 + b_2 a_2 + b_3 a_3
+///   U(t) = U_i exp(b_1 w_1) exp(b_2 w_2) exp(b_3 w_3)
+///   S(t) = S_i + b_2 (S_i+1 - S_i)
+/// where a pose's matrix is the rotation U times the symmetric stretch S. s is the length of the
+/// piece in the parameter, u and v are the velocities at the poses, v in the model's frame:
+///   a_1 = s u_i / 3, a_3 = s u_i+1 / 3, a_2 = p_i+1 - p_i - a_1 - a_3
+///   w_1 = s v_i / 3, w_3 = s v_i+1 / 3, w_2 = log(exp(-w_1) U_i^-1 U_i+1 exp(-w_3))
+/// Where two poses differ by a half turn, rounding decides which of the two senses is taken.
 class PoseCurve {
  public:
   /// The pose at 0 <= t <= 1; at 0 and 1 the given poses, up to rounding.
@@ -51,9 +59,13 @@ class PoseCurve {
 
 /// A curve through all poses of a trajectory with continuous velocity, in position and rotation.
 /// Each way depends on two poses to either side of it. Stretching, which is what a pose has besides
-/// a rotation, is interpolated by itself. Sources: Kim, Kim and Shin 1995 (rotation), Lee 1989
-/// (parametrisation), Fritsch and Carlson 1980 (limit of velocities), Shoemake and Duff 1992
-/// (stretching).
+/// a rotation, is interpolated by itself. Sources: M.-J. Kim, M.-S. Kim, S. Y. Shin, A general
+/// construction scheme for unit quaternion curves, SIGGRAPH 1995 (rotation). E. T. Y. Lee, Choosing
+/// nodes in parametric curve interpolation, Computer-Aided Design 21, 1989 (parametrisation).
+/// C. de Boor, A practical guide to splines, 1978 (velocities, knots). F. N. Fritsch, R. E.
+/// Carlson, Monotone piecewise cubic interpolation, SIAM J. Numer. Anal. 17, 1980 (limit of
+/// velocities). K. Shoemake, T. Duff, Matrix animation and polar decomposition, Graphics Interface
+/// 1992 (stretching).
 class PoseSpline {
  public:
   /// poses: invertible; they must outlive the spline. motions: how far the model moves from each

@@ -23,7 +23,7 @@ struct FaultyEdges {
   std::vector<std::array<Vec3, 2>> first;  ///< ends of the first edges, at most kMostShown
 };
 
-/// A mesh divided into parts (docs/design/solids.md, "Parts"): triangles that share an edge belong
+/// A mesh divided into parts (docs/design/model.md, "Parts"): triangles that share an edge belong
 /// to the same part.
 struct MeshParts {
   /// The mesh in the order of the file. No two vertices are at the same place, and no two triangles

@@ -154,7 +154,38 @@ void SampleSet::grow() {
 }
 
 /// Samples that cover triangles: no place of a triangle given to cover() is farther than `spacing`
-/// from a sample. The bounds are derived in docs/design/model.md, section "The cover".
+/// from a sample.
+///
+/// A triangle of the height H is laid flat with its longest side on the x axis. R is a little less
+/// than the spacing h. If each place is within R of a corner, nothing is added. Otherwise a lattice
+/// of nodes is laid over it, in m rows parallel to the longest side, every other one shifted by
+/// w / 2. Rows are d apart and nodes in a row w apart. Each node has a region, which is the places
+/// of the triangle that are nearest to it. A region that samples cover already is left out; for any
+/// other one the sample is the place of the triangle nearest to the node.
+///
+/// The lattice covers. d = (H + 2 R) / (m + 1) with the least m for which d <= 1.5 R, so
+/// R <= d <= 1.5 R, and w = 2 sqrt(d (2 R - d)) or less. Three neighbouring nodes form an isosceles
+/// triangle with base w and height d. Its circumradius is (w^2 / 4 + d^2) / (2 d) <= R, and it is
+/// acute because d >= R, so each place between the rows is within R of a node. The lowest row lies
+/// at d - R, and the places below it are within sqrt((d - R)^2 + w^2 / 4) <= R of a node of that
+/// row. The same holds above the highest row, because (m - 1) d + 2 (d - R) = H.
+///
+/// A sample serves as its node does. A triangle is convex, so no place of it is farther from the
+/// sample than from the node. A region is left out only with proof: balls and regions are convex,
+/// so if all corners of a region are within R of one sample, all its places are. Otherwise it is
+/// cut in two, at most kSplits times, and each part needs a sample of its own.
+///
+/// Rounding. Let u = 2^-53 and M the largest coordinate. Sampling is refused unless M <= 2^28 h, so
+/// u M <= 2^-25 h. The lengths of the flat triangle differ from those in space by at most 60 u M, a
+/// flat place put into space by 17 u M, the corners of a region after three sides and five cuts by
+/// 40 u M, and a node's place by 10 u M: together 127 u M < 2^-18 h. R is h (1 - kMargin). A
+/// triangle with H <= kFlat h is taken for its longest side, which moves its places by at most
+/// kFlat h. The triangle's sides are moved out by kClipMargin h before they cut a region, which is
+/// more than their own rounding, so a region never loses a place. Hence a place is at most
+/// h (1 - 2^-16 + 2^-17 + 2^-18) < h from a sample.
+///
+/// A sample is A + s (B - A) + t (C - A) with s, t >= 0 and s + t <= 1, up to 2 u. Each coordinate
+/// is off by at most 10 u M, and so the sample by 18 u M < 2^-48 M.
 class SurfaceCover {
  public:
   /// most: number of samples that may be added before cover() gives up.

@@ -100,8 +100,7 @@ inline constexpr double kLeastSpacing = 1e-9, kLargestSpacing = 1e9;  // metres
 /// the vertices of its triangles, followed by the other points that are needed. Each lies on its
 /// triangle up to an error of 2^-48 of the largest coordinate. The same mesh gives the same points
 /// in the same order. Throws InputError, which begins with `name`, where more than kMostSamples are
-/// needed, and for a spacing too fine for the size of the coordinates. docs/design/model.md has the
-/// proof.
+/// needed, and for a spacing too fine for the size of the coordinates.
 std::vector<Vec3> sample_mesh(const TriangleMesh& mesh, double spacing, const std::string& name);
 
 /// Greatest distance of a place of the triangles from the nearest vertex of its own triangle,

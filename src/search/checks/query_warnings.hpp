@@ -25,6 +25,8 @@ struct BodyMessages {
 /// Adds what was found to the log, with the names of the bodies, and once where several have it in
 /// common. A warning that the ground, or what is beside the path, is missing is given for the
 /// vehicle where it holds for all of its bodies that the scan covers; otherwise it is not given.
+/// One about the ground on a stretch of the path is given where it holds for any body. Of warnings
+/// about stretches that of the body with the longest one is given, with the stretches of all.
 void warn_of_bodies_once(const std::vector<BodyMessages>& bodies, MessageLog& log);
 
 /// Warns where a query may answer something other than was meant, because of a path in another

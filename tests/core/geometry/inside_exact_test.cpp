@@ -1,5 +1,5 @@
 // The inside of solids against exact predicates (CGAL): the sign is right wherever the distance is
-// above the bound of docs/design/solids.md.
+// above the bound of docs/design/model.md.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>

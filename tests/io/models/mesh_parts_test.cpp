@@ -1,4 +1,4 @@
-// Which parts of a mesh are solid (docs/design/solids.md).
+// Which parts of a mesh are solid (docs/design/model.md).
 #include "io/files/input_error.hpp"
 #include "io/models/mesh_facts.hpp"
 #include "io/models/sample_mesh.hpp"

@@ -83,7 +83,7 @@ struct AtPose {
     return false;
   }
 
-  /// The least d2 to an element; inside solids the signed square v of docs/design/solids.md, which
+  /// The least d2 to an element; inside solids the signed square v of docs/design/model.md, which
   /// is below 0.
   double squared(const Vec3& e) const {
     double least = std::numeric_limits<double>::infinity(), deepest = 0;

@@ -19,7 +19,7 @@ std::vector<std::uint32_t> brute_force_first_poses(std::span<const Vec3> environ
 
 /// An oracle for clearances: for every environment point the least d2 over every pair, however
 /// large, and the lowest pose that has it; not found if no d2 is finite. Inside solids it is v of
-/// docs/design/solids.md, which is below 0.
+/// docs/design/model.md, which is below 0.
 std::vector<Clearance> brute_force_clearances(std::span<const Vec3> environment,
                                               const Query& query);
 

@@ -11,7 +11,7 @@
 
 namespace clearway {
 
-/// Knows which nodes and coarse cells of a ModelField lie inside solids (docs/design/solids.md).
+/// Knows which nodes and coarse cells of a ModelField lie inside solids (docs/design/model.md).
 class FieldInside {
  public:
   static constexpr std::uint32_t kBrickWords =

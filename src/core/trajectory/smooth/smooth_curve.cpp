@@ -214,6 +214,11 @@ Pose SmoothCurve::at(double parameter) const {
   return pose;
 }
 
+/// For positions the second derivative is linear in a span. For a model point at the distance r
+/// from the origin the rotation adds at most r (3/2 s^2 + a), where s is the sum of c_k' |w_k| and
+/// a that of |c_k''| |w_k|, each at its greatest on the part: R'' = R ([w]^2 + [w']) with the
+/// angular velocity w, |w| <= s and |w'| <= a + s^2 / 2. c_k are the cumulative B-splines of a span
+/// and w_k the turns between its control rotations.
 double SmoothCurve::second_derivative_bound(double from, double to, double reach) const {
   const auto [span, middle] = place_of((from + to) / 2);
   const auto within = [this, k = span](double parameter) {

@@ -12,7 +12,7 @@
 /// y up, z forward. Its readers convert right-handed metres with x forward, y left and z up by
 ///   x3 = -100 y, y3 = 100 z, z3 = 100 x
 /// (3DTK, src/scanio/helper.cc, ScanDataTransform_xyz; globals.icc, toRieglMat). Scans and poses of
-/// 3DTK's own formats are converted by the inverse, see docs/design/scan-formats.md.
+/// 3DTK's own formats are converted by the inverse, see docs/design/inputs.md.
 namespace clearway {
 
 /// A 4 x 4 matrix, column-major as 3DTK stores and prints it: p' = M p, centimetres, left-handed.

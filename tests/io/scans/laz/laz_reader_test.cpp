@@ -1,5 +1,5 @@
 // LAZ made by an encoder of the tests. Reading files of LASzip and laz-perf showed that the encoder
-// writes what others do (docs/design/laz.md).
+// writes what others do (docs/design/inputs.md).
 #include <tbb/task_arena.h>
 
 #include <algorithm>

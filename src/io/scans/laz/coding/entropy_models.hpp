@@ -12,7 +12,7 @@
 #include "io/files/bytes.hpp"
 
 /// The adaptive models of LAZ. How and when their counts become probabilities is part of the format
-/// (docs/design/laz.md); how a symbol is found is not.
+/// (docs/design/inputs.md); how a symbol is found is not.
 namespace clearway::laz {
 
 constexpr unsigned kSymbolShift = 15;  ///< probabilities of symbols are fractions of 2^15

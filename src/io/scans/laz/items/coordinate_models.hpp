@@ -8,7 +8,7 @@
 #include "io/scans/laz/coding/entropy_models.hpp"
 
 /// LAZ chooses the models of a point's coordinates by its return number and the pulse's number of
-/// returns. The tables are facts of the format: docs/design/laz.md.
+/// returns. The tables are facts of the format: docs/design/inputs.md.
 namespace clearway::laz {
 
 template <unsigned kSize>
