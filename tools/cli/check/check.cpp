@@ -634,6 +634,7 @@ void add_check_options(CLI::App& command, CheckCommand& options) {
           "INPUT", options.inputs,
           "Scans as clearway convert takes them, folders of scans, or one store of clearway "
           "convert")
+      ->type_name("PATH")
       ->required();
   command.add_option("-o,--output", options.folder, "The folder for everything that is made")
       ->type_name("DIR")
