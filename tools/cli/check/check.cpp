@@ -76,7 +76,10 @@ constexpr std::pair<Remedy, const char*> kAdvice[]{
     {Remedy::kCpuDevice,
      "--device cpu does without a GPU; nvidia-smi lists the GPUs that can be used"},
     {Remedy::kStandardInput, "write it into a file first"},
-    {Remedy::kSampleMesh, "if it is the vehicle, --model takes it"},
+    {Remedy::kSampleMesh,
+     "if it is the vehicle, --model takes it; clearway model FILE --spacing METRES -o FILE.ply "
+     "samples its surface to points, which stand beside scans, and --skip-unreadable leaves it "
+     "out"},
     {Remedy::kFreeDisk, "free some room, or give -o a folder on a disk with more"}};
 
 /// The advice on an error; null where that of the step is right.
