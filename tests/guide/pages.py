@@ -24,6 +24,7 @@ NOT_RUN = {
     ("docs/guide/tutorial.md", "mkdir demo/tutorial"): "the test begins in its own folder",
     ("docs/guide/tutorial.md", "cd demo/tutorial"): "the test begins in its own folder",
     ("docs/guide/campaigns.md", "spring/submit.sh"): "needs Slurm; the test slurm submits campaigns",
+    ("docs/guide/command-line.md", "source <(tools/completion.py"): "the test completion does, in both shells",
     ("docs/guide/library.md", "cmake"): "builds the library; the test installed_library installs it",
     ("docs/guide/measuring.md", "tools/evaluate.sh"): "measures for minutes",
     ("docs/guide/measuring.md", "tools/experiments.py"): "makes scenes of 800 million points",
