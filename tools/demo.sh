@@ -26,13 +26,3 @@ step $clearway scene "$kind" --points "$points" -o "$out" --force
 step $clearway check "$out/environment.las" --model "$out/model.ply" \
   --trajectory "$out/trajectory.txt" --radius 0.1 --title "Clearway demo: $kind" -o "$out/site" \
   --force
-step $clearway export "$out/site/result.h5" -o "$out/site/colliding.las" --force
-cat <<END
-
-Look at:
-  $out/site/report.html    everything on one page: open it in a browser
-  $out/site/conflicts.csv  the places where the vehicle comes too close
-  $out/site/stations.csv   the least distances along the path, every 5 m
-  $out/site/colliding.las  the colliding points, for any point cloud viewer
-  $out/site/result.h5      the result itself (docs/design/result-format.md)
-END

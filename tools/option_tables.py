@@ -45,7 +45,8 @@ def commands(program):
 
 def row(name, text, options):
     """A row of the table, from what the help has on its left and right side. options: of the program."""
-    entry, text = Entry(name), text.replace("|", r"\|")
+    entry = Entry(name, text)
+    text = entry.text.replace("|", r"\|")
     usual = re.search(r"(?: \(default: ([^()]*(?:\([^()]*\))?[^()]*)\))", text)
     default = ("required" if entry.required else usual[1] if usual else
                entry.default or ("none" if entry.value else "off"))
@@ -53,9 +54,6 @@ def row(name, text, options):
     if not re.match(r"[A-Z]{2}", meaning):
         meaning = meaning[:1].lower() + meaning[1:]
     choices = entry.choices
-    if not choices and (found := re.search(r": ([\w-]+(?:, [\w-]+){3,})$", meaning)):
-        # Choices too long for the left side end the text.
-        meaning, choices = meaning[:found.start()], found[1].split(", ")
     named = [name for name in choices if re.search(rf"(?<![\w-]){re.escape(name)}(?![\w-])", meaning)]
     if len(named) < min(4, len(choices)):
         meaning += ": " + ", ".join(f"`{name}`" for name in choices)

@@ -91,6 +91,7 @@ test_deb() {
   ask_road clearway
   ask_scans
   for file in share/man/man1/clearway-run.1.gz share/bash-completion/completions/clearway \
+    share/zsh/vendor-completions/_clearway \
     share/doc/clearway/copyright lib/libclearway.a include/clearway/clearway.hpp; do
     [ -e "$root/usr/$file" ] || fail "no /usr/$file"
   done

@@ -36,7 +36,7 @@ class Guide:
         (self.scratch / "bin/clearway").symlink_to(PROGRAM)
         (self.scratch / "tools").symlink_to(page.ROOT / "tools")
         # Pages show what a machine without a GPU prints.
-        self.environment = {**os.environ, "CUDA_VISIBLE_DEVICES": "", "LC_ALL": "C.UTF-8",
+        self.environment = {**os.environ, **pages.OF_SCHEDULERS, "CUDA_VISIBLE_DEVICES": "", "LC_ALL": "C.UTF-8",
                             "PATH": f"{self.scratch / 'bin'}:{os.environ['PATH']}"}
 
     def say(self, where, text):

@@ -3,13 +3,19 @@
 # A page that is followed from top to bottom runs in one folder, which is empty or has the files that
 # stand_ins.py makes. Of any other page each block runs by itself, in a folder with these files.
 FOLLOWED_FROM_NOTHING = {"docs/guide/tutorial.md", "docs/guide/campaigns.md", "docs/guide/ledger.md"}
-FOLLOWED = {"docs/guide/section.md", "docs/guide/vehicles.md"}
+FOLLOWED = {"docs/guide/section.md", "docs/guide/vehicles.md", "docs/guide/recipes.md"}
+
+# What schedulers set in a job, here for the first task of a campaign.
+OF_SCHEDULERS = {"JOB_COMPLETION_INDEX": "0", "AWS_BATCH_JOB_ARRAY_INDEX": "0", "PBS_ARRAY_INDEX": "0",
+                 "PBS_ARRAYID": "0", "SGE_TASK_ID": "1", "LSB_JOBINDEX": "1"}
 
 # (page, beginning of the command): why the test does not run it.
 NOT_RUN = {
     ("README.md", "tools/demo.sh"): "builds the program, and runs a check as the first command of the page",
     ("README.md", "tools/test.sh"): "runs all tests",
     ("README.md", "clearway check demo/road"): "reads what the demo makes",
+    ("README.md", "export PATH="): "the test names the program",
+    ("README.md", "source <(tools/completion.py"): "the test completion does, in both shells",
     ("README.md", "cmake --preset release &&"): "builds the program and runs all tests",
     ("docs/guide/tutorial.md", "git clone"): "gets the sources",
     ("docs/guide/tutorial.md", "cd clearway"): "the test begins in its own folder",
@@ -18,6 +24,7 @@ NOT_RUN = {
     ("docs/guide/tutorial.md", "mkdir demo/tutorial"): "the test begins in its own folder",
     ("docs/guide/tutorial.md", "cd demo/tutorial"): "the test begins in its own folder",
     ("docs/guide/campaigns.md", "spring/submit.sh"): "needs Slurm; the test slurm submits campaigns",
+    ("docs/guide/command-line.md", "source <(tools/completion.py"): "the test completion does, in both shells",
     ("docs/guide/library.md", "cmake"): "builds the library; the test installed_library installs it",
     ("docs/guide/measuring.md", "tools/evaluate.sh"): "measures for minutes",
     ("docs/guide/measuring.md", "tools/experiments.py"): "makes scenes of 800 million points",
@@ -48,6 +55,9 @@ WRITTEN = {
     ("docs/guide/campaigns.md", "{"): "campaign.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "body"'): "wagon.json",
     ("docs/guide/vehicles.md", '{"bodies": [\n  {"name": "tractor"'): "road.json",
+    ("docs/guide/recipes.md", "x,y\n0,0"): "inner.csv",
+    ("docs/guide/recipes.md", "x,y\n0,-3.4"): "outer.csv",
+    ("docs/guide/recipes.md", "height,half_width"): "train.csv",
     ("docs/guide/section.md", "y,z\n-0.6"): "load.csv",
     ("docs/guide/section.md", "y,z\n-0.7"): "curve.csv",
     ("docs/guide/section.md", "chainage_from"): "outlines.csv",

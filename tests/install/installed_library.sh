@@ -109,6 +109,7 @@ check_document docs/guide/library.md
   COMP_WORDS=(clearway run --env site.h5 --first) COMP_CWORD=4
   _clearway_complete
   [ "${COMPREPLY[*]}" = --first-pose ] || fail "completion gives '${COMPREPLY[*]}'"
+  grep -q '^#compdef clearway' "$prefix/share/zsh/site-functions/_clearway" || fail "none for zsh"
 )
 cmake -S "$source/examples" -B "$scratch/example" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_CXX_FLAGS="${warnings[*]}" >/dev/null

@@ -23,6 +23,7 @@ has() { [ -s "$scratch/root/usr/$1" ] || fail "no /usr/$1"; }
 has bin/clearway
 has include/clearway/clearway.hpp
 has share/bash-completion/completions/clearway
+has share/zsh/vendor-completions/_clearway
 has share/doc/clearway/copyright
 has share/doc/clearway/changelog.gz
 for command in clearway clearway-run clearway-convert; do has "share/man/man1/$command.1.gz"; done

@@ -142,6 +142,7 @@ void add_options(CLI::App& command, ConvertCommand& options) {
           "INPUT", options.inputs,
           "Scans (LAS, LAZ, E57, PLY, PCD, PTX, PTS, 3DTK, text), folders of scans, or - for LAS "
           "or LAZ on standard input")
+      ->type_name("PATH")
       ->required();
   add_file(command, "-o,--output", options.output, "The store, an HDF5 file")->required();
   add_fields(command, kConvertFields, conversion, options.lengths);

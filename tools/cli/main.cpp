@@ -31,12 +31,28 @@ void add_commands(CLI::App& program, int& exit_code) {
   });
 }
 
+constexpr const char* kFirstSteps =
+    R"(Clearway says whether a vehicle passes through a scanned environment without
+touching it. One command gives the answer, and a page for any browser:
+
+  clearway check scans/ --model car.ply --trajectory path.txt --radius 0.1 -o site
+
+Without data of your own, make a scan of a road, a lorry and its path first:
+
+  clearway scene road -o road
+  clearway check road/environment.las --model road/model.ply \
+    --trajectory road/trajectory.txt --radius 0.1 -o road/site
+
+clearway --help lists the commands, and clearway COMMAND --help explains one.
+)";
+
 }  // namespace
 
 int run_clearway(int argc, char** argv) {
   return run_program({.name = "clearway",
                       .description = "Clearway: does this vehicle, machine or car body pass "
-                                     "through this scanned environment without touching it?"},
+                                     "through this scanned environment without touching it?",
+                      .first_steps = kFirstSteps},
                      argc, argv, add_commands);
 }
 

@@ -126,7 +126,6 @@ void log_summary(const ReportCommand& options, const ReportSummary& summary, con
         "this command makes a result with conflicts:\n  {}",
         run_again(result.reader(), *options.command, options.trajectory, Remedy::kAskForFirstPose));
   }
-  spdlog::info("open it in a browser: it is one file and needs no network");
 }
 
 /// The ending of a file's name in small letters, such as ".svg".
@@ -436,6 +435,7 @@ std::string write_any(ReportOfAny& options) {
   std::string facts;
   advising_to_run_again(*both.command, {{both.result, both.trajectory}},
                         [&] { facts = perform(both).facts; });
+  spdlog::info("open it in a browser: it is one file and needs no network");
   return facts;
 }
 

@@ -32,6 +32,9 @@ struct SceneOptions {
 };
 
 constexpr const char* kExamples = R"(
+Writes environment.las, model.ply, trajectory.txt and origins.csv, the places of
+the scanner, in metres with z up. All but the road are like those of the paper,
+and the same seed gives the same bytes.
 Scenes (environment points, model points, poses; the defaults):
   hall     55,872,714  214,489   17,234  a hall along a conveyor; a car body
   plant   350,109,065  434,700  398,999  the same, larger, a pose every 2 mm
@@ -129,9 +132,8 @@ void make_scene_files(const SceneOptions& options) {
 void add_scene(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "scene",
-      "Make a synthetic scene, four of them like those of the paper: environment.las, model.ply,\n"
-      "trajectory.txt and origins.csv, the places of the scanner. In metres, z up. The same seed "
-      "gives the same bytes.");
+      "Make a scan, a model and a path to try Clearway on: a road, a hall, a plant, a mine or a "
+      "tunnel");
   const auto options = std::make_shared<SceneOptions>();
   command->add_option("kind", options->kind, "Which scene, see below")
       ->required()

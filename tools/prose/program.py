@@ -11,9 +11,9 @@ NOT_OPTIONS = {"Positionals", "Subcommands"}  # sections; every other one is a g
 
 
 class Entry:
-    """An option or argument, from what the help has on its left side."""
+    """An option or argument, from what the help has on its left and right side."""
 
-    def __init__(self, name):
+    def __init__(self, name, text=""):
         self.flags, _, rest = name.partition(" ")
         value = re.match(r"(?!REQUIRED|Excludes:|Needs:|\.\.\.)[^\s:={]+", rest)
         choices, given = re.search(r":\{([^}]*)\}", rest), re.search(r"=(\S+)", rest)
@@ -21,6 +21,10 @@ class Entry:
         limits = re.search(r" in \[(\S+) - (\S+)\]", rest)
         self.value = value[0] if value else ""
         self.choices = choices[1].split(",") if choices else []
+        self.text = text
+        at_end = None if choices else re.search(r": ([\w-]+(?:, [\w-]+){3,})$", text)
+        if at_end:  # choices too long for the left side
+            self.text, self.choices = text[:at_end.start()], at_end[1].split(", ")
         self.default = given[1] if given else ""
         self.excluded = excluded[1].split() if excluded else []
         self.limits = limits.groups() if limits else ()

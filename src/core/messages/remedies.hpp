@@ -58,7 +58,9 @@ inline constexpr auto kRemedies = std::to_array<RemedyKind>({
      "; --columns says which ones hold x, y and z, for example --columns 2,3,4", kColumn,
      "; --columns says which ones hold x, y and z, for example --columns {}"},
     {kStandardInput, "standard_input", "; clearway convert - < FILE takes it as standard input"},
-    {kSampleMesh, "sample_mesh", "; clearway model samples its surface to points in PLY"},
+    {kSampleMesh, "sample_mesh",
+     "; clearway model FILE --spacing METRES -o FILE.ply samples its surface to points, which "
+     "convert takes, and --skip-unreadable leaves it out beside scans"},
     {kSkipUnreadable, "skip_unreadable",
      "; --skip-unreadable leaves out the files that cannot be read"},
     {kIgnoreCrs, "ignore_crs", "; --ignore-crs takes the coordinates as they are", kLengthUnit,

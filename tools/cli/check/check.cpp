@@ -76,7 +76,10 @@ constexpr std::pair<Remedy, const char*> kAdvice[]{
     {Remedy::kCpuDevice,
      "--device cpu does without a GPU; nvidia-smi lists the GPUs that can be used"},
     {Remedy::kStandardInput, "write it into a file first"},
-    {Remedy::kSampleMesh, "if it is the vehicle, --model takes it"},
+    {Remedy::kSampleMesh,
+     "if it is the vehicle, --model takes it; clearway model FILE --spacing METRES -o FILE.ply "
+     "samples its surface to points, which stand beside scans, and --skip-unreadable leaves it "
+     "out"},
     {Remedy::kFreeDisk, "free some room, or give -o a folder on a disk with more"}};
 
 /// The advice on an error; null where that of the step is right.
@@ -573,10 +576,12 @@ class Check {
       return;
     }
     spdlog::info("seconds: {}", seconds_text());
-    std::string text = conflicts.value("text", "") +
-                       "these commands did it, and each can be given again by hand:\n";
+    std::string text = "these commands did it, and each can be given again by hand:\n";
     for (const std::string& command : commands_) text += "  " + command + "\n";
-    print(text + sentence + "\n");
+    print(text + "\n" + conflicts.value("text", "") + "\n" + sentence + "\n");
+    if (options_.open) return;
+    spdlog::info("open {} in a browser: it is one file and needs no network",
+                 plan_.file(kReportName).string());
   }
 
   /// "convert 1.42, run 1.90, conflicts 0.61; 3.93 in all", without steps of no time.
@@ -632,6 +637,7 @@ void add_check_options(CLI::App& command, CheckCommand& options) {
           "INPUT", options.inputs,
           "Scans as clearway convert takes them, folders of scans, or one store of clearway "
           "convert")
+      ->type_name("PATH")
       ->required();
   command.add_option("-o,--output", options.folder, "The folder for everything that is made")
       ->type_name("DIR")
@@ -671,7 +677,7 @@ void add_check(CLI::App& program, int& exit_code) {
       "is there.\n"
       "The same command again makes only what is missing, also after it was interrupted. Another\n"
       "question in the same folder needs --force, and uses the store again.\n"
-      "Prints the conflicts, the commands that it consists of, and the verdict of clearway run.\n"
+      "Prints the commands that it consists of, the conflicts, and the verdict of clearway run.\n"
       "Example: clearway check scans --model car.obj --trajectory path.txt --radius 0.1 -o site");
   command->callback([options, &exit_code] {
     run_stoppable(options->folder, kGoesOn, [&] {

@@ -48,8 +48,25 @@ constexpr std::string_view kNoGroup = "Options";  // CLI11's default group
 /// The number of options up to which a help text is one list without groups.
 constexpr std::size_t kShortHelp = 11;
 
-/// The number of options that --help shows at most, unless the first group alone has more.
-constexpr std::size_t kMostShown = 16;
+/// The number of options up to which --help shows all of them.
+constexpr std::size_t kMostShown = 17;
+
+/// What --help shows of a command that has more options, besides those that are required: the
+/// options that a first use needs, of every command and of single ones.
+constexpr std::pair<std::string_view, std::string_view> kFirstUse[]{
+    {"",
+     "--env --model --vehicle --trajectory --radius --output --floor --model-unit --forward --up "
+     "--title --force"},
+    {"check", "--near --open"},
+    {"run", "--first-pose --clearance --profile"},
+    {"convert", "--near --within --unit"},
+    {"conflicts", "--ledger --update"},
+    {"stations", "--every"},
+    {"shift", "--lateral"},
+    {"compare", "--conflicts"},
+    {"report", "--shifts --section --outline"},
+    {"find", "--pivots --margin"},
+    {"follow", "--body --at --pivots"}};
 
 /// Columns of a help text, and the one in which the texts of options begin.
 constexpr std::size_t kHelpWidth = 80, kTextColumn = 30;
@@ -77,6 +94,17 @@ std::size_t place_of(const std::string& title) {
   if (title == kNoGroup) return 1;
   const auto at = std::ranges::find(kTitles, title);
   return 2 * static_cast<std::size_t>(at - kTitles.begin());
+}
+
+bool is_of_first_use(const CLI::App& command, const CLI::Option& option) {
+  if (option.get_required()) return true;
+  if (option.get_lnames().empty()) return false;
+  const std::string name = "--" + option.get_lnames().front();
+  return std::ranges::any_of(kFirstUse, [&](const auto& of) {
+    const std::vector<std::string> names = CLI::detail::split(std::string(of.second), ' ');
+    return (of.first.empty() || of.first == command.get_name()) &&
+           std::ranges::find(names, name) != names.end();
+  });
 }
 
 /// Breaks a paragraph at blanks into lines of at most `width` columns; a longer word has a line of
@@ -211,22 +239,26 @@ class HelpInOrder : public CLI::Formatter {
   std::string groups_of(const CLI::App& app, bool all) const {
     std::vector<std::string> groups = app.get_groups();
     std::ranges::stable_sort(groups, {}, place_of);
+    const std::size_t options = app.get_options(is_listed).size();
+    all = all || options <= kMostShown;
     std::string text;
-    std::size_t shown = 0, left = 0;
+    std::size_t shown = 0;
     for (const std::string& group : groups) {
-      const auto options = app.get_options([&group](const CLI::Option* option) {
-        return option->get_group() == group && option->nonpositional();
+      const auto of_group = app.get_options([&](const CLI::Option* option) {
+        return is_listed(option) && option->get_group() == group &&
+               (all || is_of_first_use(app, *option));
       });
-      if (group.empty() || options.empty()) continue;
-      if (all || (left == 0 && (shown == 0 || shown + options.size() <= kMostShown))) {
-        text += make_group(group, false, options);
-        shown += options.size();
-      } else {
-        left += options.size();
-      }
+      if (of_group.empty()) continue;
+      text += make_group(group, false, of_group);
+      shown += of_group.size();
     }
-    if (left == 0) return text;
-    return text + "\n" + std::to_string(left) + " more options: --help-all\n";
+    if (shown == options) return text;
+    return text + "\n" + std::to_string(options - shown) + " more options: --help-all\n";
+  }
+
+  /// Whether a help text has the option among its groups; an empty group hides one.
+  static bool is_listed(const CLI::Option* option) {
+    return option->nonpositional() && !option->get_group().empty();
   }
 };
 

@@ -163,6 +163,19 @@ int finish(const CLI::App& program, const std::string& name, const CLI::ParseErr
   return kDone;
 }
 
+/// Whether the words name the program, or a command, that has commands of its own, and nothing
+/// else.
+bool is_group_alone(const CLI::App& program, const std::vector<std::string>& words) {
+  const CLI::App* command = &program;
+  for (const std::string& word : words) {
+    const auto named =
+        command->get_subcommands([&](const CLI::App* below) { return below->get_name() == word; });
+    if (named.empty()) return false;
+    command = named.front();
+  }
+  return !command->get_subcommands({}).empty();
+}
+
 int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands) {
   CLI::App program{text.description};
   program.set_version_flag("--version", CLEARWAY_VERSION);
@@ -174,7 +187,12 @@ int run(const ProgramText& text, int argc, char** argv, AddCommands add_commands
   add_commands(program, exit_code);
   group_common_options(program);
   check_flags(program);
-  const std::vector<std::string> words = checked_words(program, text.name, argc, argv);
+  std::vector<std::string> words = checked_words(program, text.name, argc, argv);
+  if (words.empty() && *text.first_steps != '\0') {
+    print(text.first_steps);
+    return kDone;
+  }
+  if (is_group_alone(program, words)) words.emplace_back("--help");
   std::vector<const char*> pointers{argv[0]};
   for (const std::string& word : words) pointers.push_back(word.c_str());
   try {

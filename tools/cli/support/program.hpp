@@ -46,6 +46,7 @@ std::string advice_on(const Message& message);
 struct ProgramText {
   const char* name;
   const char* description;
+  const char* first_steps = "";  ///< printed by a call without arguments; empty: the help is
 };
 
 /// A function that adds the subcommands, whose callbacks set `exit_code` where success is not 0.

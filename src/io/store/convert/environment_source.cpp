@@ -27,8 +27,7 @@ auto reading_one_of(std::size_t files, Read read) {
     return read();
   } catch (const InputError& error) {
     const Remedy remedy = error.remedy();
-    const bool can_be_skipped = remedy == Remedy::kNone || remedy == Remedy::kStandardInput ||
-                                remedy == Remedy::kSampleMesh;
+    const bool can_be_skipped = remedy == Remedy::kNone || remedy == Remedy::kStandardInput;
     if (files < 2 || !can_be_skipped) throw;
     throw InputError(error.what(), Remedy::kSkipUnreadable);
   }
