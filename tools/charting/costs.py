@@ -3,7 +3,7 @@ space, sections, and what a search touches."""
 
 import numpy as np
 
-from charting.plot import (bar_look, fixed_ticks, legend_in, line, lines, log_axis, log_panels, panels,
+from charting.plot import (bar_look, legend_in, line, lines, log_axis, log_panels, panels,
                            power, rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
                            with_unit)
 from charting.record import markdown_table
@@ -204,8 +204,8 @@ def draw_share(record):
         draw_shares(touched, shares(record, scene))
         draw_cost(cost, seconds_by_way(record, scene))
         touched.set_title(f"{letter}  {scene}")
-    sheet.say("Left: what the search of the set touches on the CPU, as a share of all there is, "
-              "logarithmic; beside the bars the numbers. Right: seconds of plan, field and search, "
+    sheet.say("Left: what the search of the set touches on the CPU, in percent of all there is; "
+              "beside the bars the numbers. Right: seconds of plan, field and search, "
               "median of the runs, when it is made to read and search every cell, to make the whole "
               "model field before, or to answer every pose as a question of its own, with the "
               "field kept (the mean of 64 poses, scaled).")
@@ -213,18 +213,15 @@ def draw_share(record):
 
 
 def draw_shares(axes, rows):
-    values = [touched / every if every else 0 for _, touched, every in rows]
-    low = 10.0 ** (np.floor(np.log10(min(value for value in values if value > 0))) - 0.3)
-    for y, ((_, touched, every), value) in enumerate(zip(rows, values)):
-        axes.barh(y, max(value, low), left=0, height=0.62, **bar_look(SKY, linewidth=0.4))
-        inside = value > 1e-3
-        axes.annotate(f"{short(touched)} of {short(every)}", (value, y), (-3 if inside else 3, 0),
-                      textcoords="offset points", ha="right" if inside else "left", va="center")
-    axes.set_xscale("log")
-    axes.set_xlim(low, max(1, *values))
+    for y, (_, touched, every) in enumerate(rows):
+        value = 100 * touched / every if every else 0
+        axes.barh(y, value, height=0.62, **bar_look(SKY, linewidth=0.4))
+        inside = value > 60
+        axes.annotate(f"{short(touched)} of {short(every)}" + f", {value:.1g} %" * (0 < value < 1),
+                      (min(value, 100), y), (-3 if inside else 3, 0), textcoords="offset points",
+                      ha="right" if inside else "left", va="center")
+    axes.set(xlim=(0, 100), xlabel="%")
     rows_of_bars(axes, [what for what, *_ in rows])
-    decades = range(int(np.ceil(np.log10(low))), 1, 2 if low < 1e-5 else 1)
-    fixed_ticks(axes.xaxis, [10.0**i for i in decades], power)
 
 
 def draw_cost(axes, taken):

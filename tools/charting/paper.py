@@ -281,7 +281,7 @@ def draw_bars(sheet, axes, cases, cells):
         axes.errorbar(x, whole[0], whole[1:], color="black", linestyle="none", elinewidth=0.8)
     for name, colour, marker in STAGES:
         axes.plot([at + 0.38 for at in x], [case.median(name) for case in run], color=colour,
-                  marker=marker, linestyle="none", label=name, markersize=4)
+                  marker=marker, linestyle="none", label=name, markersize=4, clip_on=False, zorder=5)
     for at, case in enumerate(cases):
         if case.failure:
             fail(sheet, axes, at, case.failure)
