@@ -4,7 +4,7 @@ space, sections, and what a search touches."""
 import numpy as np
 
 from charting.plot import (bar_look, legend_in, line, lines, log_axis, log_panels, panels,
-                           power, rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
+                           rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
                            with_unit)
 from charting.record import markdown_table
 from charting.sheet import Sheet
@@ -134,6 +134,7 @@ def draw_section(record):
                      draw_bar)
     wide.set_xscale("log")
     wide.set_xlim(right=wide.get_xlim()[1] * 2)
+    seconds_axis(wide.xaxis)
     log_panels(sheet, axes[1:].flat, "bcde",
                (("bin", "length of a bin (m)"), ("cell", "side of a cell (m)"),
                 ("length", "length of the load (m)"), ("threads", "threads")), "", "search (s)",
@@ -213,14 +214,15 @@ def draw_share(record):
 
 
 def draw_shares(axes, rows):
+    limit = max(100, *(100 * touched / max(every, 1) for _, touched, every in rows))
     for y, (_, touched, every) in enumerate(rows):
-        value = 100 * touched / every if every else 0
+        value = 100 * touched / max(every, 1)
         axes.barh(y, value, height=0.62, **bar_look(SKY, linewidth=0.4))
-        inside = value > 60
-        axes.annotate(f"{short(touched)} of {short(every)}" + f", {value:.1g} %" * (0 < value < 1),
-                      (min(value, 100), y), (-3 if inside else 3, 0), textcoords="offset points",
-                      ha="right" if inside else "left", va="center")
-    axes.set(xlim=(0, 100), xlabel="%")
+        inside = value > 0.6 * limit
+        rarely = f", 1 in {short(float(f'{every / touched:.3g}'))}" if 0 < value < 1 else ""
+        axes.annotate(f"{short(touched)} of {short(every)}{rarely}", (value, y), (-3 if inside else 3, 0),
+                      textcoords="offset points", ha="right" if inside else "left", va="center")
+    axes.set(xlim=(0, limit), xlabel="%")
     rows_of_bars(axes, [what for what, *_ in rows])
 
 
