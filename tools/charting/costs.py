@@ -254,3 +254,63 @@ def share_markdown(record):
 
 def percent(share):
     return f"{float(f'{100 * share:.2g}'):.9g} %"
+
+
+# --- What each step brings on the way from a k-d tree to the sweep ----------------------------------
+
+ROWS = {"kdtree cpu": "k-d tree over the scan (kdtree)", "poses": "inverse: nanoflann over the model, by pose",
+        "tree": "… poses together by the motion tree", "field": "… the model field in place of nanoflann",
+        "sweep cpu": "… blocks of points together (sweep)", "voxels": "voxels of 2 cm in place of the field"}
+
+
+def steps(record, scene):
+    """Rows (method, seconds, what to say of it) in the order of ROWS; the factor is of the step before."""
+    before = None
+    for method in ROWS:
+        for case in record.where(scene=scene, method=method):
+            found = case.findings
+            seconds = np.median(case.answer_seconds()) if case.runs else found.get("all_poses_seconds")
+            if seconds is None:
+                yield method, None, f"failed: {case.failure}"
+                continue
+            said = with_unit(seconds, "s")
+            if method == "voxels":
+                said += (f" after {with_unit(found['peer']['voxels_seconds'], 's')}; "
+                         f"{case.wrong():,} of {found['colliding_points']:,} points wrong")
+            elif before:
+                said += (f", {before / seconds:.2g} times as fast" if before > seconds else
+                         f", {seconds / before:.2g} times as slow")
+            said += f" (1/{found['every_pose']})" if found.get("every_pose", 1) > 1 else ""
+            yield method, seconds, said
+            before = seconds
+
+
+def draw_ablation(record):
+    scenes = record.names("scene")
+    sheet = Sheet(record, "What each step brings, from a k-d tree to the sweep", 1.7 * len(scenes), times=())
+    axes, _ = panels(sheet, len(scenes), 1)
+    for letter, scene, panel in zip("abcd", scenes, axes[:, 0]):
+        rows = list(steps(record, scene))
+        taken = [seconds for _, seconds, _ in rows if seconds]
+        for y, (method, seconds, said) in enumerate(rows):
+            look = bar_look(BLUE, "", 0.4) if method.endswith("cpu") else bar_look(ORANGE, "////", 0.4)
+            panel.barh(y, seconds or 0, height=0.62, **look)
+            panel.annotate(said, (seconds or min(taken), y), (3, 0), textcoords="offset points",
+                           va="center")
+        panel.set_xlim(min(taken) / 2, max(taken) * 3 * (max(taken) / min(taken)) ** 0.7)
+        seconds_axis(panel.xaxis)
+        rows_of_bars(panel, [ROWS[method] for method, *_ in rows])
+        panel.set(title=f"{letter}  {scene}", xlabel="seconds")
+    sheet.say("Times of an answer, each beside that of the row above; all but the voxels find the same set, id by "
+              "id. Blue: engines of Clearway, which read the scan from its store; hatched: with all points in "
+              "memory. (1/n): only every n-th pose was searched, and the time is scaled. Voxels: after the time "
+              "of making them; their distances are interpolated, and wrong points are false hits and misses.")
+    return sheet
+
+
+def ablation_markdown(record):
+    """The same numbers as a Markdown table."""
+    scenes = record.names("scene")
+    said = [{method: text for method, _, text in steps(record, scene)} for scene in scenes]
+    return markdown_table(["", *scenes], [[name, *(of.get(method, "") for of in said)]
+                                          for method, name in ROWS.items()])

@@ -79,8 +79,8 @@ def draw_accuracy(record, title="Speed against accuracy (hall)", time="search"):
             x, below, above = spread(seconds(case))
             look = look_of(styles.get(case["method"], of_engines[case["engine"]])._replace(line="none"))
             panel.errorbar(x, y_of(case), xerr=[[below], [above]], elinewidth=0.6, zorder=3, **look)
-        panel.set(title=f"{letter}  how {'many are wrong' if letter == 'b' else 'far they are from the boundary'}",
-                  xlabel=f"{time} (s)", ylabel=label)
+        what = "how many are wrong" if letter == "b" else "how far they are from the boundary"
+        panel.set(title=f"{letter}  {what}", xlabel=f"{time} (s)", ylabel=label)
         panel.margins(0.22, 0.1)
         if exact:
             panel.axvline(np.median(seconds(exact)), color=BLACK, linewidth=1, linestyle=":")

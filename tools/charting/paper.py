@@ -373,15 +373,16 @@ class Power:
     relative residuals, and that of the best fit with p = 1."""
 
     def __init__(self, points, seconds):
-        drawn = np.random.default_rng(1).multinomial(len(points), np.full(len(points), 1 / len(points)), RESAMPLES)
-        weights = np.vstack([np.ones(len(points)), drawn])  # first, each sample once
+        count = len(points)
+        drawn = np.random.default_rng(1).multinomial(count, np.full(count, 1 / count), RESAMPLES)
+        weights = np.vstack([np.ones(count), drawn])  # first, each sample once
         fits = [self.at(exponent, points, seconds, weights) for exponent in EXPONENTS]
         squares = np.array([left for *_, left in fits])
         best = squares.argmin(0)
         self.p = EXPONENTS[best[0]]
         self.low, self.high = np.percentile(EXPONENTS[best[1:]], [2.5, 97.5])
         self.a, self.b = (term[0] for term in fits[best[0]][:2])
-        self.residual, self.of_line = np.sqrt([squares[best[0], 0], squares[LINE, 0]] / np.float64(len(points)))
+        self.residual, self.of_line = np.sqrt([squares[best[0], 0], squares[LINE, 0]] / np.float64(count))
 
     @staticmethod
     def at(exponent, points, seconds, weights):

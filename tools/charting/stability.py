@@ -162,7 +162,8 @@ def draw_memory(sheet, axes, record, option, title):
     cases = [case for case in cases if least[case["engine"]] and times_of(case) >= 1]
     steps = sorted({times_of(case) for case in cases})
     engine_lines(sheet, axes, cases, answer, lambda case: steps.index(times_of(case)))
-    axes.set(xticks=range(len(steps)), xticklabels=[f"{step:g}" for step in steps], xlim=(-0.5, len(steps) - 0.5))
+    axes.set(xticks=range(len(steps)), xticklabels=[f"{step:g}" for step in steps],
+             xlim=(-0.5, len(steps) - 0.5))
     axes.tick_params("x", labelsize=6.5)
     seconds_axis(axes.yaxis)
 
