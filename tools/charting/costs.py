@@ -263,7 +263,7 @@ ROWS = {"kdtree cpu": "k-d tree over the scan (kdtree)", "poses": "inverse: nano
         "sweep cpu": "… blocks of points together (sweep)", "voxels": "voxels of 2 cm in place of the field"}
 
 
-def steps(record, scene):
+def ablation_rows(record, scene):
     """Rows (method, seconds, what to say of it) in the order of ROWS; the factor is of the step before."""
     before = None
     for method in ROWS:
@@ -290,7 +290,7 @@ def draw_ablation(record):
     sheet = Sheet(record, "What each step brings, from a k-d tree to the sweep", 1.7 * len(scenes), times=())
     axes, _ = panels(sheet, len(scenes), 1)
     for letter, scene, panel in zip("abcd", scenes, axes[:, 0]):
-        rows = list(steps(record, scene))
+        rows = list(ablation_rows(record, scene))
         taken = [seconds for _, seconds, _ in rows if seconds]
         for y, (method, seconds, said) in enumerate(rows):
             look = bar_look(BLUE, "", 0.4) if method.endswith("cpu") else bar_look(ORANGE, "////", 0.4)
@@ -301,8 +301,8 @@ def draw_ablation(record):
         seconds_axis(panel.xaxis)
         rows_of_bars(panel, [ROWS[method] for method, *_ in rows])
         panel.set(title=f"{letter}  {scene}", xlabel="seconds")
-    sheet.say("Times of an answer, each beside that of the row above; all but the voxels find the same set, id by "
-              "id. Blue: engines of Clearway, which read the scan from its store; hatched: with all points in "
+    sheet.say("Times of an answer, each beside that of the row above; all but the voxels find the same set, id "
+              "by id. Blue: engines of Clearway, which read the scan from its store; hatched: with all points in "
               "memory. (1/n): only every n-th pose was searched, and the time is scaled. Voxels: after the time "
               "of making them; their distances are interpolated, and wrong points are false hits and misses.")
     return sheet
@@ -311,6 +311,6 @@ def draw_ablation(record):
 def ablation_markdown(record):
     """The same numbers as a Markdown table."""
     scenes = record.names("scene")
-    said = [{method: text for method, _, text in steps(record, scene)} for scene in scenes]
+    said = [{method: text for method, _, text in ablation_rows(record, scene)} for scene in scenes]
     return markdown_table(["", *scenes], [[name, *(of.get(method, "") for of in said)]
                                           for method, name in ROWS.items()])
