@@ -25,6 +25,7 @@ FIGURES = {
     "seen": (costs.draw_seen, {}), "section": (costs.draw_section, {}),
     "certainty": (certainty.draw, {}), "check": (costs.draw_check, {}),
     "peers": (methods.draw_peers, {"text": methods.peers_markdown}),
+    "ablation": (costs.draw_ablation, {"text": costs.ablation_markdown}),
     "share": (costs.draw_share, {"text": costs.share_markdown})}
 
 

@@ -9,7 +9,7 @@
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 # Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
-experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers certainty)
+experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers ablation certainty)
 force=no only= size=small
 while [ $# -gt 1 ]; do
   case $1 in
@@ -40,7 +40,7 @@ fi
 limit=6
 [ "$size" = small ] || limit=60
 # The scenes of an experiment that could take others too.
-declare -A scenes=([seen]=hall,mine [section]=hall)
+declare -A scenes=([seen]=hall,mine [section]=hall [ablation]=hall,tunnel)
 wanted() { [ -z "$only" ] || [[ $only == *,$1,* ]]; }
 for experiment in "${experiments[@]}"; do
   wanted "$experiment" || continue

@@ -706,6 +706,15 @@ def section(bench):
                           ["--model-as", "solid", "--radius", 0.001, "--device", "cpu"], once=True)
 
 
+def peer(bench, name, files, limit, *more):
+    """What a program of tools/bench/peers/programs finds. Where all poses take longer than the limit,
+    it searches every n-th."""
+    out, *_ = bench.execute(f"peer_{name}", "--env", files.store, "--model", files.model, "--trajectory",
+                            files.trajectory, "--radius", RADIUS, "--threads", bench.cores, "--limit", limit,
+                            *more, limit=10 * bench.options.limit)  # with its preparation
+    return json.loads(out)
+
+
 def peers(bench):
     """Other libraries on the scenes, or on the one that --env, --model and --trajectory name; those whose
     program was not built, since the library was not found, are named."""
@@ -715,17 +724,30 @@ def peers(bench):
         if not (bench.options.programs / f"peer_{name}").exists():
             print(f"peer_{name}: not built", file=sys.stderr)
             continue
-
-        def measured():
-            # Where all poses take longer than a third of the limit, every n-th is searched.
-            words = ["--env", files.store, "--model", files.model, "--trajectory", files.trajectory,
-                     "--radius", RADIUS, "--threads", bench.cores, "--limit", bench.options.limit / 3]
-            out, *_ = bench.execute(f"peer_{name}", *words, *(["--cell", cell] if cell else []),
-                                    limit=10 * bench.options.limit)  # with its preparation
-            return json.loads(out)
-
         bench.keep({"scene": scene, "peer": name, "threads": bench.cores, "radius": RADIUS,
-                    **({"cell": cell} if cell else {})}, lambda: attempted(measured, ""))
+                    **({"cell": cell} if cell else {})}, lambda: attempted(
+                        lambda: peer(bench, name, files, bench.options.limit / 3,
+                                     *(["--cell", cell] if cell else [])), ""))
+
+
+def ablation(bench):
+    """What each step brings on the way from a k-d tree over the scan to engine sweep: the question turned
+    round, poses taken together, a model field, blocks of points; and a plain distance field."""
+    if not (bench.options.programs / "peer_inverse").exists():
+        print("peer_inverse: not built, as nanoflann was not found", file=sys.stderr)
+        return
+    for scene, files in bench.scenes():
+        reference = bench.answer(f"reference-{scene}", files, bench.engine("sweep cpu").options)
+        for engine in (bench.engine("kdtree cpu"), bench.engine("sweep cpu")):
+            bench.measure({"scene": scene, "method": engine.name}, files, engine.options,
+                          lambda result: compared(result, reference), exact=True)
+        for method in ("poses", "tree", "field", "voxels"):
+            # Searching every n-th pose does not take an n-th where poses are taken together.
+            limit = bench.options.limit * (10 if method != "poses" else 1 / 3)
+            found = bench.keep({"scene": scene, "method": method}, lambda: attempted(lambda: peer(
+                bench, "inverse", files, limit, "--method", method, "--cell", 0.02), ""))["findings"]
+            if method != "voxels" and found.get("false_hits", 0) + found.get("misses", 0):
+                bench.wrong.append(f"{scene}/{method}")
 
 
 def check(bench):
@@ -863,8 +885,8 @@ def certainty(bench):
 EXPERIMENTS = {table: (True, True), threads: (False, False), grid: (False, False), points: (False, False),
                accuracy: (False, False), stability: (False, False), scaling: (False, False),
                share: (True, False), surfaces: (False, True), seen: (True, False), section: (True, False),
-               peers: (True, True), check: (False, False), demand: (False, False), session: (True, True),
-               certainty: (False, False)}
+               peers: (True, True), ablation: (True, True), check: (False, False), demand: (False, False),
+               session: (True, True), certainty: (False, False)}
 
 
 def words_of(choices):
@@ -893,7 +915,8 @@ def main():
                              "smoke: seconds, to try the script out")
     parser.add_argument("--scenes", type=words_of(SCENES), help=f"of {', '.join(SCENES)}; default: all")
     for name in ("--env", "--model", "--trajectory"):
-        parser.add_argument(name, type=Path, help="a query of your own, for table, surfaces, peers and session")
+        parser.add_argument(name, type=Path, help="a query of your own, for table, surfaces, peers, ablation and "
+                                                "session")
     parser.add_argument("--device", choices=("auto", "cpu", "cuda"), default="auto",
                         help="cpu measures no GPU; auto measures one where there is one")
     parser.add_argument("--repetitions", type=int, default=3,
@@ -914,7 +937,8 @@ def main():
         parser.error(f"{options.experiment} has scenes of its own")
     given = [options.env, options.model, options.trajectory]
     if any(given) and not (of_any_query and all(given)):
-        parser.error("--env, --model and --trajectory belong together, and to table, surfaces, peers and session")
+        parser.error("--env, --model and --trajectory belong together, and to table, surfaces, peers, "
+                     "ablation and session")
     options.scenes = options.scenes or list(SCENES)
     bench = Bench(options.experiment, options)
     try:

@@ -3,8 +3,8 @@ space, sections, and what a search touches."""
 
 import numpy as np
 
-from charting.plot import (bar_look, fixed_ticks, legend_in, line, lines, log_axis, log_panels, panels,
-                           power, rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
+from charting.plot import (bar_look, legend_in, line, lines, log_axis, log_panels, panels,
+                           rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
                            with_unit)
 from charting.record import markdown_table
 from charting.sheet import Sheet
@@ -134,6 +134,7 @@ def draw_section(record):
                      draw_bar)
     wide.set_xscale("log")
     wide.set_xlim(right=wide.get_xlim()[1] * 2)
+    seconds_axis(wide.xaxis)
     log_panels(sheet, axes[1:].flat, "bcde",
                (("bin", "length of a bin (m)"), ("cell", "side of a cell (m)"),
                 ("length", "length of the load (m)"), ("threads", "threads")), "", "search (s)",
@@ -204,8 +205,8 @@ def draw_share(record):
         draw_shares(touched, shares(record, scene))
         draw_cost(cost, seconds_by_way(record, scene))
         touched.set_title(f"{letter}  {scene}")
-    sheet.say("Left: what the search of the set touches on the CPU, as a share of all there is, "
-              "logarithmic; beside the bars the numbers. Right: seconds of plan, field and search, "
+    sheet.say("Left: what the search of the set touches on the CPU, in percent of all there is; "
+              "beside the bars the numbers. Right: seconds of plan, field and search, "
               "median of the runs, when it is made to read and search every cell, to make the whole "
               "model field before, or to answer every pose as a question of its own, with the "
               "field kept (the mean of 64 poses, scaled).")
@@ -213,18 +214,16 @@ def draw_share(record):
 
 
 def draw_shares(axes, rows):
-    values = [touched / every if every else 0 for _, touched, every in rows]
-    low = 10.0 ** (np.floor(np.log10(min(value for value in values if value > 0))) - 0.3)
-    for y, ((_, touched, every), value) in enumerate(zip(rows, values)):
-        axes.barh(y, max(value, low), left=0, height=0.62, **bar_look(SKY, linewidth=0.4))
-        inside = value > 1e-3
-        axes.annotate(f"{short(touched)} of {short(every)}", (value, y), (-3 if inside else 3, 0),
+    limit = max(100, *(100 * touched / max(every, 1) for _, touched, every in rows))
+    for y, (_, touched, every) in enumerate(rows):
+        value = 100 * touched / max(every, 1)
+        axes.barh(y, value, height=0.62, **bar_look(SKY, linewidth=0.4))
+        inside = value > 0.6 * limit
+        rarely = f", 1 in {short(float(f'{every / touched:.3g}'))}" if 0 < value < 1 else ""
+        axes.annotate(f"{short(touched)} of {short(every)}{rarely}", (value, y), (-3 if inside else 3, 0),
                       textcoords="offset points", ha="right" if inside else "left", va="center")
-    axes.set_xscale("log")
-    axes.set_xlim(low, max(1, *values))
+    axes.set(xlim=(0, limit), xlabel="%")
     rows_of_bars(axes, [what for what, *_ in rows])
-    decades = range(int(np.ceil(np.log10(low))), 1, 2 if low < 1e-5 else 1)
-    fixed_ticks(axes.xaxis, [10.0**i for i in decades], power)
 
 
 def draw_cost(axes, taken):
@@ -255,3 +254,63 @@ def share_markdown(record):
 
 def percent(share):
     return f"{float(f'{100 * share:.2g}'):.9g} %"
+
+
+# --- What each step brings on the way from a k-d tree to the sweep ----------------------------------
+
+ROWS = {"kdtree cpu": "k-d tree over the scan (kdtree)", "poses": "inverse: nanoflann over the model, by pose",
+        "tree": "… poses together by the motion tree", "field": "… the model field in place of nanoflann",
+        "sweep cpu": "… blocks of points together (sweep)", "voxels": "voxels of 2 cm in place of the field"}
+
+
+def ablation_rows(record, scene):
+    """Rows (method, seconds, what to say of it) in the order of ROWS; the factor is of the step before."""
+    before = None
+    for method in ROWS:
+        for case in record.where(scene=scene, method=method):
+            found = case.findings
+            seconds = np.median(case.answer_seconds()) if case.runs else found.get("all_poses_seconds")
+            if seconds is None:
+                yield method, None, f"failed: {case.failure}"
+                continue
+            said = with_unit(seconds, "s")
+            if method == "voxels":
+                said += (f" after {with_unit(found['peer']['voxels_seconds'], 's')}; "
+                         f"{case.wrong():,} of {found['colliding_points']:,} points wrong")
+            elif before:
+                said += (f", {before / seconds:.2g} times as fast" if before > seconds else
+                         f", {seconds / before:.2g} times as slow")
+            said += f" (1/{found['every_pose']})" if found.get("every_pose", 1) > 1 else ""
+            yield method, seconds, said
+            before = seconds
+
+
+def draw_ablation(record):
+    scenes = record.names("scene")
+    sheet = Sheet(record, "What each step brings, from a k-d tree to the sweep", 1.7 * len(scenes), times=())
+    axes, _ = panels(sheet, len(scenes), 1)
+    for letter, scene, panel in zip("abcd", scenes, axes[:, 0]):
+        rows = list(ablation_rows(record, scene))
+        taken = [seconds for _, seconds, _ in rows if seconds]
+        for y, (method, seconds, said) in enumerate(rows):
+            look = bar_look(BLUE, "", 0.4) if method.endswith("cpu") else bar_look(ORANGE, "////", 0.4)
+            panel.barh(y, seconds or 0, height=0.62, **look)
+            panel.annotate(said, (seconds or min(taken), y), (3, 0), textcoords="offset points",
+                           va="center")
+        panel.set_xlim(min(taken) / 2, max(taken) * 3 * (max(taken) / min(taken)) ** 0.7)
+        seconds_axis(panel.xaxis)
+        rows_of_bars(panel, [ROWS[method] for method, *_ in rows])
+        panel.set(title=f"{letter}  {scene}", xlabel="seconds")
+    sheet.say("Times of an answer, each beside that of the row above; all but the voxels find the same set, id "
+              "by id. Blue: engines of Clearway, which read the scan from its store; hatched: with all points in "
+              "memory. (1/n): only every n-th pose was searched, and the time is scaled. Voxels: after the time "
+              "of making them; their distances are interpolated, and wrong points are false hits and misses.")
+    return sheet
+
+
+def ablation_markdown(record):
+    """The same numbers as a Markdown table."""
+    scenes = record.names("scene")
+    said = [{method: text for method, _, text in ablation_rows(record, scene)} for scene in scenes]
+    return markdown_table(["", *scenes], [[name, *(of.get(method, "") for of in said)]
+                                          for method, name in ROWS.items()])

@@ -1,136 +1,121 @@
 """Time against wrongly decided points: of exact and approximate methods, and of other libraries."""
 
+from pathlib import Path
+
 import numpy as np
+from matplotlib.ticker import NullLocator
 
 from charting.labels import place_labels
 from charting.paper import like
-from charting.plot import (count_axis, fail, fixed_ticks, legend_in, look_of, panels, power,
-                           room_for_failures, seconds_axis, short, spread)
-from charting.record import markdown_table
+from charting.plot import (fixed_ticks, legend_in, look_of, panels, power, rows_of_bars, seconds_axis,
+                           short, spread, with_unit)
+from charting.record import MEASURED, markdown_table
 from charting.sheet import Sheet
 from charting.style import (BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, YELLOW, Style, engine_styles,
                             styles_of)
 
 # --- Exact and approximate methods ------------------------------------------------------------------
 
-# What a method's value is called beside a marker and in the legend.
-METHODS = {"model thinned": ("v", "model thinned to a voxel v (m)"),
-           "every nth pose": ("n", "every n-th pose"),
-           "environment quantised": ("q", "environment quantised to q (m)")}
-# Of surfaces: how it is called in the legend.
-SHAPES = {"surface": "the surface itself",
-          "sampled": "points on it: no place of the surface is farther from one than written"}
+# What a method's value is called beside a marker, its unit, and the method in the legend.
+METHODS = {"model thinned": ("v", "m", "model thinned to a voxel v"),
+           "every nth pose": ("n", "", "every n-th pose"),
+           "environment quantised": ("q", "m", "environment rounded to q"),
+           "tolerance": ("t", "m", "tolerance t (no longer in the program)"),
+           "sampled": ("", "", "points on the surface, which is nowhere farther from one than written")}
 
 
-def label_of(case):
-    if case["method"] in METHODS:
-        name = f"{METHODS[case['method']][0]} {power(float(case['value']))}"
-    elif case["method"] in SHAPES:
-        name = case["value"] or "surface"
-    else:
-        name = f"{case['engine']} {case['value']}".strip()
-    return name + (" ↑" if case.findings.get("beyond") else "")
+def value_text(case):
+    """The parameter of an approximate method: v 5 mm."""
+    letter, unit, _ = METHODS.get(case["method"], (case["engine"], "", ""))
+    value = case["value"]
+    return f"{letter} {with_unit(float(value), unit) if unit else value}".strip()
+
+
+def engine_text(case):
+    """sweep cuda as sweep, GPU."""
+    *words, device = case["engine"].split()
+    return f"{' '.join(words)}, {'GPU' if device == 'cuda' else 'CPU'}"
+
+
+def row_text(case):
+    """What a row of methods that decide nothing wrongly is called; one far origin is as the other."""
+    of = value_text(case) if case["method"] in METHODS else "surface" if case["method"] == "surface" else ""
+    return f"{engine_text(case)}, {of}".removesuffix(", ")
 
 
 def draw_surfaces(record):
-    where = "hall" if "hall" in record.names("scene") else record.parameters.get("env", "")
-    return draw_accuracy(record, f"A surface beside points on it ({where})")
+    where = "hall" if "hall" in record.names("scene") else Path(record.parameters.get("env", "")).stem
+    return draw_accuracy(record, f"A surface beside points on it ({where})", "answer")
 
 
-def draw_accuracy(record, title="Speed against accuracy (hall)"):
-    sheet = Sheet(record, title, 8.3, times=("answer",))
-    axes, place = panels(sheet, 2, 1, legend_lines=3)
-    styles = styles_of(record.names("method"))
-    number, distance = axes[:, 0]
-    run = record.measured()
-    labels = {number: draw_markers(number, run, styles, lambda case: case.wrong())}
-    count_axis(number, max([case.wrong() for case in run], default=1), "wrongly decided points")
-    number.set_title("a  how many points are decided wrongly")
-    draw_millionths(number, run)
-
-    distances = [case.findings["largest_distance"] for case in run if case.wrong()]
-    none = 10.0 ** (np.floor(np.log10(min([d for d in distances if d > 0], default=1e-3))) - 2)
-    labels[distance] = draw_markers(
-        distance, run, styles, lambda case:
-        max(case.findings["largest_distance"], none * 10) if case.wrong() else none)
-    distance_axis(distance, none, max(distances, default=1e-3))
-    distance.set_title("b  how far they are from the boundary, at most")
-    for panel in (number, distance):
-        if run:
-            seconds = [np.median(case.answer_seconds()) for case in run]
-            panel.set_xlim(min(seconds) / 3, max(seconds) * 3)
+def draw_accuracy(record, title="Speed against accuracy (hall)", time="search"):
+    sheet = Sheet(record, title, 6.2, times=(time,))
+    run, seconds = record.measured(), MEASURED[time]
+    wrong = [case for case in run if case.wrong()]
+    rows = {}  # of those that decide nothing wrongly, or did not end: the cases by name
+    for case in sorted(record.cases, key=lambda case: np.median(seconds(case)) if case.runs else np.inf):
+        if not case.wrong():
+            rows.setdefault(row_text(case), []).append(case)
+    styles = styles_of([name for name in METHODS if any(case["method"] == name for case in wrong)])
+    of_engines = engine_styles(case["engine"] for case in record.cases)
+    grid = sheet.figure.add_gridspec(3, 2, height_ratios=[0.3 + 0.2 * len(rows), 3.5, 0.4])
+    right, place = (sheet.figure.add_subplot(grid[row, :]) for row in (0, 2))
+    place.set_axis_off()
+    for y, cases in enumerate(rows.values()):
+        for case in cases:
+            draw_right(sheet, right, case, y, of_engines[case["engine"]], seconds)
+    rows_of_bars(right, list(rows))
+    seconds_axis(right.xaxis)
+    every = [value for case in run for value in seconds(case)]
+    right.set(title="a  methods without wrong points", xlabel=f"{time} (s)")
+    right.set_xlim(min([right.get_xlim()[0], *every]), max([right.get_xlim()[1], *every]))
+    exact = min((case for case in run if not case.wrong() and case["method"] not in METHODS),
+                key=lambda case: np.median(seconds(case)), default=None)
+    panels = [sheet.figure.add_subplot(grid[1, column]) for column in (0, 1)]
+    for panel, letter, label, y_of in zip(panels, "bc", (
+            "wrong points", "largest |distance − radius| of wrong points (m)"), (
+                lambda case: case.wrong(), lambda case: max(case.findings["largest_distance"], 1e-16))):
+        for case in wrong:
+            x, below, above = spread(seconds(case))
+            look = look_of(styles.get(case["method"], of_engines[case["engine"]])._replace(line="none"))
+            panel.errorbar(x, y_of(case), xerr=[[below], [above]], elinewidth=0.6, zorder=3, **look)
+        what = "how many are wrong" if letter == "b" else "how far they are from the boundary"
+        panel.set(title=f"{letter}  {what}", xlabel=f"{time} (s)", ylabel=label)
+        panel.margins(0.22, 0.1)
+        if exact:
+            panel.axvline(np.median(seconds(exact)), color=BLACK, linewidth=1, linestyle=":")
+        panel.set_yscale("log")
+        panel.yaxis.set_minor_locator(NullLocator())
+        if letter == "b":
+            seconds_axis(panel.yaxis)
+        else:
+            panel.yaxis.set_major_formatter(lambda value, _: power(value))
         seconds_axis(panel.xaxis)
-        panel.set_xlabel("answer (s)")
-        low, high = panel.get_xlim()
-        for case in record.cases:
-            if case.failure:
-                fail(sheet, panel, high * (low / high) ** 0.03, f"{case.key}: {case.failure}",
-                     styles[case["method"]], f"> {case.limit:.0f} s" if case.limit else "")
-        room_for_failures(panel)
-    draw_front(number, run, lambda case: case.wrong(), 0)
-    draw_front(distance, run, lambda case: case.findings["largest_distance"], none)
     sheet.figure.canvas.draw()
-    for panel in (number, distance):
-        place_labels(panel, labels[panel])
-    legend_in(place, {SHAPES.get(name) or METHODS.get(name, ("", name))[1]: style._replace(line="none")
-                      for name, style in styles.items()}, 3)
-    sheet.say("Wrong: false hits and misses against exact distances. Engine and parameter are "
-              "written beside the markers. Grey steps: the front, no other is both faster and more "
-              "accurate. ↑: some false hits are farther away than distances are known. Time "
-              "axes are logarithmic; what was stopped stands at their end.")
+    for panel, y_of in zip(panels, (lambda case: case.wrong(), lambda case: case.findings["largest_distance"])):
+        place_labels(panel, [(np.median(seconds(case)), y_of(case),
+                              value_text(case) + " ↑" * bool(case.findings.get("beyond"))) for case in wrong])
+    legend_in(place, {METHODS[name][2]: style._replace(line="none") for name, style in styles.items()}, 2)
+    sheet.say("Wrong: false hits and misses against exact distances. a: methods that decide no point wrongly. "
+              + "Hollow: at a far origin (UTM, 10,000 km); ×: stopped. "
+              * any("far" in name for name in record.names("method"))
+              + "b, c: methods that do, by "
+              + " and ".join(dict.fromkeys(map(engine_text, wrong))) + "."
+              + (f" Dotted: {row_text(exact)}, which is exact." if exact else "")
+              + " ↑: some false hits are farther away than distances are known. All axes are logarithmic.")
     return sheet
 
 
-def draw_markers(axes, run, styles, y_of):
-    """Returns the labels of the markers, for place_labels()."""
-    labels = []
-    for case in run:
-        if not case.findings:
-            continue
-        x, below, above = spread(case.answer_seconds())
-        look = look_of(styles[case["method"]]._replace(line=None))
-        axes.errorbar(x, y_of(case), xerr=[[below], [above]], elinewidth=0.8, zorder=3, **look)
-        labels.append((x, y_of(case), label_of(case)))
-    return labels
-
-
-def draw_millionths(axes, run):
-    """A second scale: of a million environment points."""
-    millions = (run[0].runs[0]["environment_points"] if run else 1) / 1e6
-    right = axes.secondary_yaxis(1.0, functions=(lambda n: n / millions, lambda share: share * millions))
-    right.set_yscale("symlog", linthresh=1 / millions, linscale=0.6)
-    low, high = axes.get_ylim()
-    fixed_ticks(right.yaxis, [0] + [10.0**i for i in range(-3, 7) if low < 10.0**i * millions < high
-                                    and 10.0**i * millions >= 1], short)
-    right.set_ylabel("of a million environment points")
-    right.spines["right"].set_visible(True)
-
-
-def distance_axis(axes, none, most):
-    axes.set_yscale("log")
-    axes.set_ylim(none / 5, most * 10)
-    low, high = np.log10(none) + 1, int(np.floor(np.log10(most * 10)))
-    step = 1 if high - low < 9 else 2
-    fixed_ticks(axes.yaxis, [none] + [10.0**i for i in range(high, int(low), -step)],
-                lambda value: "none" if value < none * 3 else power(value))
-    axes.set_ylabel("largest |distance − radius|\nof wrong points (m)")
-
-
-def draw_front(axes, run, y_of, floor):
-    """Steps through those that no other beats in both."""
-    points = sorted((np.median(case.answer_seconds()), y_of(case) if case.wrong() else floor)
-                    for case in run)
-    front = []
-    for x, y in points:
-        if not front or y < front[-1][1]:
-            front.append((x, y))
-    if not front:
+def draw_right(sheet, axes, case, y, style, seconds):
+    """A marker in a row, or a cross where the case was stopped."""
+    if case.failure:
+        sheet.number_of_failure(f"{case.key}: {case.failure}")
+        if case.limit:
+            axes.plot([case.limit], [y], "x", color=BLACK, markeredgewidth=1.5)
         return
-    x, y = np.array(front).T
-    limits = axes.axis()
-    axes.plot([x[0], *x, limits[1]], [limits[3], *np.maximum(y, floor), max(y[-1], floor)],
-              color="#999999", drawstyle="steps-post", linewidth=1, zorder=1)
-    axes.axis(limits)
+    x, below, above = spread(seconds(case))
+    far = {"markerfacecolor": "white", "zorder": 1} if "far origin" in case["method"] else {}
+    axes.errorbar(x, y, xerr=[[below], [above]], elinewidth=0.8, **look_of(style._replace(line="none")) | far)
 
 
 # --- Beside other libraries on each scene: the headline chart ---------------------------------------
@@ -161,15 +146,9 @@ def peer_name(case):
     return PEERS[case["peer"]][0] + (f" {100 * cell:g} cm" if cell else "")
 
 
-def engine_name(case):
-    """sweep cuda as Clearway sweep, GPU."""
-    *words, device = case["engine"].split()
-    return f"Clearway {' '.join(words)}, {'GPU' if device == 'cuda' else 'CPU'}"
-
-
 def marks_of(scene, record, table):
     for case in table.measured(scene=scene) if table else []:
-        yield Mark(engine_name(case), engine_styles([case["engine"]])[case["engine"]],
+        yield Mark(f"Clearway {engine_text(case)}", engine_styles([case["engine"]])[case["engine"]],
                    np.median(case.answer_seconds()), case.wrong(),
                    case.findings["common"] + case.findings["only_in_reference"])
     for case in record.where(scene=scene):
@@ -219,7 +198,7 @@ def draw_peers(record, table=None):
     alone = [scene for scene in marks if not record.where(scene=scene)]
     if alone:
         sheet.say(f"The others were not measured in: {', '.join(alone)}.")
-    for cases, name_of in ((record.cases, peer_name), (table.cases if table else [], engine_name)):
+    for cases, name_of in ((record.cases, peer_name), (table.cases if table else [], engine_text)):
         for case in cases:
             if case.failure:
                 sheet.number_of_failure(f"{case['scene']}, {name_of(case)}: {case.failure}")
@@ -242,7 +221,7 @@ def draw_scene(axes, marks, bottom):
         if mark.share:
             put(axes, mark, np.log10(mark.share))
     fixed_ticks(axes.yaxis, [low + (bottom - low) / 2, *range(int(bottom), int(top) + 1)],
-                lambda value: "none" if value < bottom else f"$10^{{{value:.0f}}}$" if value else "1")
+                lambda value: "none" if value < bottom else power(10.0**value))
 
 
 def put(axes, mark, y):

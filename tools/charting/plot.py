@@ -104,7 +104,8 @@ def fixed_ticks(axis, ticks, text):
 
 
 def log_axis(axis):
-    """Log scale with plain numbers. True where there is something to show, else no ticks."""
+    """Log scale with plain numbers, and 2 and 5 where there are few decades. True where there is
+    something to show, else no ticks."""
     limits = axis.get_data_interval()
     empty = not np.isfinite(limits).all() or limits.max() <= 0
     if empty:
@@ -114,6 +115,8 @@ def log_axis(axis):
         fixed_ticks(axis, [], short)
     else:
         axis.set_major_formatter(FuncFormatter(lambda value, _: short(value)))
+        if limits.max() < 100 * max(limits.min(), 1e-300):
+            axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_minor_formatter(NullFormatter())
     return not empty
 

@@ -37,7 +37,7 @@ class Case:
 
     def answer_seconds(self):
         """What the question takes besides its inputs, a context and writing its result."""
-        return self.seconds("plan", "field", "engine", "search")
+        return self.seconds("thin", "plan", "field", "engine", "search")
 
     def values(self, name):
         return np.array([run[name] for run in self.runs])

@@ -26,8 +26,8 @@ def draw(record):
               "the share that an engine decides wrongly. "
               f"d to f: eight stray points stretch the tunnel's bounding box{chunks}; full markers: grid, "
               "hollow: sweep (e, f: conversion, and in f hollow the most that a run held). "
-              "h and i: the budget relative to the least that the program names, which "
-              "it refuses to go below.")
+              "h and i: the budget relative to the least that the program names; with less "
+              "it refuses to search, which is not drawn.")
     number, distance, boundary, *sparse = axes.flat[:6]
     radius, memory, device_memory, *poses = axes.flat[6:]
     draw_origin(sheet, number, distance, record)
@@ -152,13 +152,20 @@ def draw_memory(sheet, axes, record, option, title):
         return
     least = {engine: least_of(record, option, engine)
              for engine in dict.fromkeys(case["engine"] for case in cases)}
-    engine_lines(sheet, axes, cases, answer, lambda case: case["value"] / least[case["engine"]])
-    axes.set_xscale("log", base=2)
-    axes.set_xticks([1, 2, 4, 8], ["1", "2", "4", "8"])
-    axes.set_xticks([], minor=True)
+    sheet.say("Least " + option + ": " + ", ".join(
+        f"{engine} {bytes_text(needed) if needed else 'not named, so not drawn'}"
+        for engine, needed in least.items()) + ".")
+
+    def times_of(case):
+        return round(case["value"] / least[case["engine"]], 2)
+
+    cases = [case for case in cases if least[case["engine"]] and times_of(case) >= 1]
+    steps = sorted({times_of(case) for case in cases})
+    engine_lines(sheet, axes, cases, answer, lambda case: steps.index(times_of(case)))
+    axes.set(xticks=range(len(steps)), xticklabels=[f"{step:g}" for step in steps],
+             xlim=(-0.5, len(steps) - 0.5))
+    axes.tick_params("x", labelsize=6.5)
     seconds_axis(axes.yaxis)
-    sheet.say("Least " + option + " that works: " + ", ".join(
-        f"{engine} {bytes_text(least[engine])}" for engine in least) + ".")
 
 
 def bytes_text(count):
@@ -166,13 +173,11 @@ def bytes_text(count):
 
 
 def least_of(record, option, engine):
-    """As a refusal named it; without one, the least that worked."""
+    """As a refusal named it, or None."""
     for case in record.where(vary="least" + option, engine=engine):
-        found = re.search(re.escape(option) + r" (\d+) is enough", case.failure or "")
-        if found:
+        if found := re.search(re.escape(option) + r" (\d+) is enough", case.failure or ""):
             return int(found[1])
-    cases = record.where(vary=option, engine=engine)
-    return min([case["value"] for case in cases if case.runs] or [case["value"] for case in cases])
+    return None
 
 
 def say_differences(sheet, record):

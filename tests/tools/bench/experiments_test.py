@@ -126,6 +126,15 @@ class Experiments(unittest.TestCase):
                              (usual["colliding_points"], usual[whole]))
         self.assertGreater(found["poses one by one"]["seconds"], 0)
 
+    def test_ablation(self):
+        path = self.programs / "peer_inverse"
+        path.write_text("#!/bin/sh\ncase $* in *tree*|*voxels*) misses=1;; *) misses=0;; esac\n"
+                        "echo '{\"false_hits\": 0, \"misses\": '$misses'}'\n")
+        path.chmod(0o755)
+        record = self.run_it("ablation", "--force", "--scenes", "hall", code=1, says="is wrong: hall/tree\n")
+        self.assertEqual([case["key"] for case in record["cases"]], [f"hall/{method}" for method in (
+            "kdtree cpu", "sweep cpu", "poses", "tree", "field", "voxels")])
+
     def test_peers(self):
         for name, text in (("nanoflann", "echo '{\"false_hits\": 0}'"), ("cgal", "echo no room >&2; exit 1"),
                            ("octomap", "exec sleep 60")):

@@ -1,33 +1,10 @@
 // nanoflann: a k-d tree in doubles, one radius search for every pose and model point.
 
-#include <nanoflann.hpp>
-
+#include "bench/peers/programs/nanoflann_tree.hpp"
 #include "bench/peers/programs/peer.hpp"
 
 namespace clearway::bench {
 namespace {
-
-/// Points as nanoflann reads them.
-struct NanoflannPoints {
-  std::span<const Vec3> points;
-
-  std::size_t kdtree_get_point_count() const { return points.size(); }
-  double kdtree_get_pt(std::size_t index, std::size_t axis) const {
-    return points[index][static_cast<int>(axis)];
-  }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
-  }
-};
-
-/// nanoflann's k-d tree over points in doubles.
-using NanoflannTree =
-    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, NanoflannPoints>,
-                                        NanoflannPoints, 3, std::uint32_t>;
-
-/// Points in a leaf of the tree.
-constexpr std::size_t kLeafPoints = 12;
 
 /// Marks what a search finds at once, which radiusSearchCustomCallback() is for.
 class MarkingResult {

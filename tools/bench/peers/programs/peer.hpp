@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "clearway/pose.hpp"
@@ -41,6 +43,8 @@ struct PeerOptions {
   double radius = 0.1;
   int threads = 1;
   double cell = 0.05;  ///< metres: the edge of a voxel, for methods that have some
+  std::string method;  ///< for programs that have several
+  std::filesystem::path environment;
 };
 
 /// A foreign method that finds the environment points near a moved model. Each program of this
@@ -58,8 +62,6 @@ class Peer {
 
  protected:
   PeerOptions options_;
-
- private:
   nlohmann::json about_;
 };
 

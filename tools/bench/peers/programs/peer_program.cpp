@@ -28,7 +28,7 @@ namespace clearway::bench {
 namespace {
 
 struct Arguments {
-  std::filesystem::path environment, model, trajectory;
+  std::filesystem::path model, trajectory;
   PeerOptions options;
   double limit = 60;
   int repetitions = 3;
@@ -127,7 +127,7 @@ nlohmann::json compare(const Marks& marks, const Points& points,
 }
 
 nlohmann::json run(const Arguments& arguments) {
-  const StoreReader store(arguments.environment);
+  const StoreReader store(arguments.options.environment);
   const Points points = points_of(store);
   const std::vector<Vec3> model = read_model_points(
       arguments.model, {.spacing = arguments.options.radius / 4});  // as in clearway run
@@ -149,7 +149,7 @@ nlohmann::json run(const Arguments& arguments) {
   }
   const double peak = peak_bytes();
 
-  Session session(arguments.environment, {.device = Device::kCpu, .threads = threads});
+  Session session(arguments.options.environment, {.device = Device::kCpu, .threads = threads});
   const SessionAnswer exact =
       session.search({{model}, poses, {.radius = arguments.options.radius}});
   nlohmann::json out = compare(marks, points, exact.collisions().source);
@@ -176,13 +176,14 @@ int run_program(int argc, char** argv) {
   CLI::App app(
       "Finds the environment points near a moved model with another library, and compares "
       "them with the exact ones; prints JSON");
-  app.add_option("--env", arguments.environment, "Store of the environment")->required();
+  app.add_option("--env", arguments.options.environment, "Store of the environment")->required();
   app.add_option("--model", arguments.model, "Model")->required();
   app.add_option("--trajectory", arguments.trajectory, "Trajectory")->required();
   app.add_option("--radius", arguments.options.radius, "Metres")->capture_default_str();
   app.add_option("--threads", arguments.options.threads, "Threads (default: all cores)");
   app.add_option("--cell", arguments.options.cell, "Edge of a voxel in metres, for octomap")
       ->capture_default_str();
+  app.add_option("--method", arguments.options.method, "One of several, for inverse");
   app.add_option("--limit", arguments.limit,
                  "Seconds of a search; where all poses take longer, every n-th is searched")
       ->capture_default_str();
