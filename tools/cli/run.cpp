@@ -355,8 +355,8 @@ void add_run(CLI::App& program, int& exit_code) {
   add_run_options(*command, *options);
   command->footer(
       "A point collides when its distance to the model at some pose is strictly below the radius.\n"
-      "A mesh is searched as its surface, other models as their points. With --between-poses the "
-      "way from each pose to the next counts too.\n"
+      "A closed mesh is searched as a solid, any other mesh as its surface, and other models as\n"
+      "their points. With --between-poses the way from each pose to the next counts too.\n"
       "--between-poses and the engines kdtree and grid search points alone, and refuse a mesh\n"
       "unless --model-as points, --model-spacing or --model-vertices asks for points of it. These\n"
       "engines find the points that collide at the poses, and nothing else.\n"

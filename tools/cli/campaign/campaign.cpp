@@ -245,8 +245,8 @@ void add_campaign_run(CLI::App& campaign, int& exit_code) {
   command->footer(
       "Each command of a task is a process of its own; plan.json has its words. An interrupted "
       "task\n"
-      "resumes. The exit code is that of the task, or the largest one of several; the verdicts of\n"
-      "runs count only with --fail-on-collision, and only where no task failed.\n"
+      "resumes. The exit code is that of the task, or the first of 5, 4, 3, 2, 1 and 6 with which\n"
+      "one of several ended; 1 and 6 are verdicts, which count only with --fail-on-collision.\n"
       "With --all, interrupted tasks (5) are queued again, and those that failed for the "
       "machine's\n"
       "sake (4) at most twice.\n"
