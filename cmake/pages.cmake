@@ -23,7 +23,7 @@ function(embed name answer parts styles scripts)
   set(source "${source}" PARENT_SCOPE)
 endfunction()
 
-set(source "#include \"report/page.hpp\"
+set(source "#include \"report/page_parts.hpp\"
 
 namespace clearway {
 ")

@@ -8,8 +8,6 @@
 namespace clearway {
 namespace {
 
-constexpr ResultParts kNoParts{.first_pose = false, .clearance = false};
-
 CudaSlotSize size_of_slot(const PackedCloud& cloud, const SlotLayout& layout) {
   ArrayRun result;
   PageResultArrays(result, std::uint64_t{layout.cells} * cloud.blocks_per_cell(), kNoParts);

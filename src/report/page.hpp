@@ -12,6 +12,7 @@
 #include "clearway/vec3.hpp"
 #include "core/util/progress.hpp"
 #include "io/files/json.hpp"
+#include "report/page_parts.hpp"
 
 namespace clearway {
 
@@ -54,10 +55,6 @@ std::string delta_planes(std::span<const std::int32_t> values);
 void append_columns(const std::string& name, const std::vector<PagePoint>& points,
                     std::vector<PageColumn>& columns);
 
-/// What the browser runs, of the files of src/report/page, which the build puts into the program.
-/// A name in double braces stands for a part of the content.
-extern const std::string_view kReportPage, kSectionPage, kComparisonPage, kCampaignPage;
-
 /// What the facts of every page begin with: the version, and the texts of its head.
 Json page_head(const PageTexts& texts, const std::string& title);
 
@@ -69,7 +66,7 @@ struct PageContent {
   std::vector<PageColumn> columns = {};
 };
 
-/// Writes one of the pages above with its content. Returns its size in bytes. Throws
+/// Writes a page of page_parts.hpp with its content. Returns its size in bytes. Throws
 /// ResourceError.
 std::uint64_t write_page(const std::filesystem::path& path, std::string_view page,
                          PageContent content);

@@ -11,7 +11,7 @@ from charting.plot import (fixed_ticks, legend_in, look_of, panels, power, rows_
                            short, spread, with_unit)
 from charting.record import MEASURED, markdown_table
 from charting.sheet import Sheet
-from charting.style import (BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, YELLOW, Style, engine_styles,
+from charting.style import (BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Style, engine_styles,
                             styles_of)
 
 # --- Exact and approximate methods ------------------------------------------------------------------
@@ -126,6 +126,7 @@ PEERS = {"nanoflann": ("nanoflann", Style(SKY, "p", "none", "")),
          "open3d": ("Open3D", Style(PURPLE, ">", "none", "")),
          "octomap": ("OctoMap", Style(YELLOW, "*", "none", "")),
          "3dtk": ("3DTK (the paper's)", Style(YELLOW, "8", "none", "")),
+         "cugrid": ("3DTK (the paper's), GPU", Style(VERMILION, "8", "none", "")),
          "cubql": ("cuBQL, GPU", Style(BLUE, "H", "none", ""))}
 ROW = 0.4       # decades that a row of the band takes
 SCENES = ("hall", "tunnel", "plant", "mine", "street")

@@ -18,6 +18,7 @@ struct ResultParts {
   bool profile = false;           ///< whether there are facts of a profile, as a device lists them
   std::uint64_t facts_ahead = 0;  ///< room for facts of a profile beyond one for each block
 };
+inline constexpr ResultParts kNoParts{.first_pose = false, .clearance = false};
 
 /// The arrays of a PageResult for a number of blocks in a run of bytes. Arrays not asked for are
 /// empty.
