@@ -9,6 +9,7 @@ Example: tools/experiments.py build/release/tools table -o table.json --work /tm
 """
 
 import argparse
+import atexit
 import fcntl
 import hashlib
 import json
@@ -809,6 +810,7 @@ def memory_cgroup(limit):
         try:
             folder.mkdir(exist_ok=True)
             if (folder / name).exists():
+                atexit.register(folder.rmdir)
                 (folder / name).write_text(str(limit))
                 return folder
             folder.rmdir()
@@ -864,8 +866,6 @@ def outofcore(bench):
             bench.measure({"points": points, "question": question, "state": state}, lambda: at_hand(state), (),
                           once=True, refusal="", command=lambda _, result: command(state, options, result))
     shutil.rmtree(folder, ignore_errors=True)
-    if cgroup:
-        cgroup.rmdir()
 
 
 def session(bench):
