@@ -26,6 +26,7 @@ FIGURES = {
     "certainty": (certainty.draw, {}), "check": (costs.draw_check, {}),
     "peers": (methods.draw_peers, {"text": methods.peers_markdown}),
     "ablation": (costs.draw_ablation, {"text": costs.ablation_markdown}),
+    "outofcore": (costs.draw_outofcore, {"text": costs.outofcore_markdown}),
     "share": (costs.draw_share, {"text": costs.share_markdown})}
 
 

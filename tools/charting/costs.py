@@ -1,14 +1,17 @@
 """What it costs to know more, by what it grows with: the whole of `clearway check`, searches, seen
 space, sections, and what a search touches."""
 
+from itertools import product
+
 import numpy as np
 
+from charting.labels import place_labels
 from charting.plot import (bar_look, legend_in, line, lines, log_axis, log_panels, panels,
-                           rows_of_bars, seconds_axis, short, spread, value_of, wide_bars,
-                           with_unit)
+                           room_for_failures, rows_of_bars, seconds_axis, short, spread, value_of,
+                           wide_bars, with_unit)
 from charting.record import markdown_table
 from charting.sheet import Sheet
-from charting.style import BLUE, ORANGE, SKY, engine_styles, styles_of
+from charting.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, Style, engine_styles, styles_of
 
 # --- The whole of clearway check, by the number of points and by step -------------------------------
 
@@ -314,3 +317,86 @@ def ablation_markdown(record):
     said = [{method: text for method, _, text in ablation_rows(record, scene)} for scene in scenes]
     return markdown_table(["", *scenes], [[name, *(of.get(method, "") for of in said)]
                                           for method, name in ROWS.items()])
+
+
+# --- Scans larger than memory -----------------------------------------------------------------------
+
+QUESTIONS = {"conversion": Style(BLACK, "s", "-", ""), "check": Style(ORANGE, "o", "-", ""),
+             "set": Style(BLUE, "^", "-", ""), "set, GPU": Style(PURPLE, "v", "-", "")}
+STATES = {None: "-", "warm": "-", "cold": "--", "confined": ":"}
+NUMBERS = {"seconds": ("wall_seconds", "{:.3g}".format), "processor seconds": ("cpu_seconds", "{:.3g}".format),
+           "peak memory (bytes)": ("peak_resident_bytes", short), "read (bytes)": ("bytes_read", short),
+           "from the disk (bytes)": ("disk_bytes", short), "temporary (bytes)": ("temporary_bytes", short),
+           "store (bytes)": ("store_bytes", short), "colliding points": ("colliding_points", "{:,}".format)}
+
+
+def number_of(case, name):
+    """A number of a question's run or of a conversion, in an array; an empty one where there is none."""
+    value = (case.runs[0] if case.runs else case.findings).get(name, ())
+    return np.atleast_1d(sum(value.values()) if isinstance(value, dict) else value)
+
+
+def draw_outofcore(record):
+    sheet = Sheet(record, "Scans larger than memory (mine)", 6.2, times=())
+    axes, _ = panels(sheet, 2, 2)
+    labels = [draw_by_points(sheet, panel, record, *what) for panel, what in zip(axes.flat, (
+        ("a  from the scan to answers", "wall_seconds", (None, "warm")),
+        ("b  the store not in the page cache", "wall_seconds", ("cold", "confined")),
+        ("c  peak memory", "peak_resident_bytes", (None, "warm", "confined")),
+        ("d  bytes read", "bytes_read", ("warm",))))]
+    sheet.figure.canvas.draw()
+    for panel, of_panel in zip(axes.flat, labels):
+        place_labels(panel, of_panel)
+    memory = {f"{case.findings['memory_bytes'] >> 20}M" for case in made_of(record)}
+    sheet.say(f"Every process has --memory {''.join(memory)} and all cores. Conversion: from a pipe, while another "
+              "process makes the scan. Check: with the first poses, clearances and profile that clearway check "
+              "asks for. a: the store is in the page cache. b: it is dropped before (cold), and then also read in "
+              "a memory cgroup of 1.5 times --memory, where the cache finds no room (confined). c: resident "
+              "memory, of which pages of the store are a part that the system may take back; dotted: confined; "
+              "less than 60 MB is not measured. d: what the program takes from the store, some of it more than "
+              "once.")
+    for case in record.where(state="confined"):
+        if "skipped" in case.findings:
+            sheet.say(f"Confined: {case.findings['skipped']}.")
+    return sheet
+
+
+def made_of(record):
+    """The conversions that made a store."""
+    return [case for case in record.where(question="conversion") if not case.failure]
+
+
+def draw_by_points(sheet, panel, record, title, name, states):
+    """A line for each question and state, and returns their labels, (x, y, text); beside bytes also
+    the sizes of the store, of the scan and of --memory."""
+    of_bytes, labels = name != "wall_seconds", []
+    scale, made = 1e9 if of_bytes else 1, made_of(record)
+    for (question, style), state in product(QUESTIONS.items(), states):
+        cases = record.where(question=question, state=state)
+        line(sheet, panel, cases, lambda case: case["points"], lambda case: number_of(case, name) / scale,
+             style._replace(line=STATES[state]), question)
+        ends = [(case["points"], y / scale) for case in cases for y in number_of(case, name)]
+        if ends and not (of_bytes and state == "confined"):
+            labels.append((*ends[-1], question if state in (None, "warm") else f"{question}, {state}"))
+    for label, size in (("store", lambda case: case.findings["store_bytes"]),
+                        ("scan in doubles", lambda case: 24 * case["points"]),
+                        ("memory allowed", lambda case: case.findings["memory_bytes"])) if of_bytes and made else ():
+        ends = [(case["points"], size(case) / scale) for case in made]
+        panel.plot(*zip(*ends), color=GREY, linewidth=0.8, linestyle="-.")
+        labels.append((*ends[0], label))
+    panel.set(title=title, xlabel="points of the scan", ylabel="GB" if of_bytes else "seconds")
+    panel.margins(0.1, 0.12)
+    log_axis(panel.xaxis)
+    least, most = panel.get_xlim()
+    panel.set_xlim(least, most * (most / least) ** 0.4)  # room for labels
+    seconds_axis(panel.yaxis)
+    room_for_failures(panel)
+    return labels
+
+
+def outofcore_markdown(record):
+    """The same numbers as a Markdown table."""
+    rows = [[f"{case['points']:,}", case["question"], case.get("state") or "", *(
+        "".join(map(text, number_of(case, name))) for name, text in NUMBERS.values()), case.failure or ""]
+            for case in record.cases if case.get("points")]
+    return markdown_table(["points", "question", "state", *NUMBERS, "failed"], rows)

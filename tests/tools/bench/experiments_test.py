@@ -159,6 +159,18 @@ class Experiments(unittest.TestCase):
         for case in self.run_it("certainty", "--force")["cases"] if MODULE else ():
             self.assertFalse(case["findings"].get("differ"))
 
+    def test_outofcore(self):
+        found = defaultdict(set)
+        for case in self.run_it("outofcore", "--force")["cases"]:
+            at = case["parameters"]
+            if at.get("question") == "conversion":
+                self.assertGreater(case["findings"]["store_bytes"], 8 * at["points"])
+            elif "skipped" not in case.get("findings", {}):
+                run = case["runs"][0]
+                found[at["points"]].add((run["environment_points"], run["colliding_points"]))
+        self.assertEqual([[points for points, _ in each] for each in found.values()], [[20_000], [40_000]])
+        self.assertFalse((self.folder / "work" / "outofcore-smoke").exists())
+
     def test_seen(self):
         cases = self.cases("seen", "--scenes", "hall")
         swept = {vary: self.of_runs(cases[vary], "seen", "swept") for vary in ("beams", "cube", "path")}
