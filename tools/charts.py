@@ -21,7 +21,7 @@ FIGURES = {
     "engines": (paper.draw_engines, {"record": "table"}), "threads": (paper.draw_threads, {}),
     "grid": (paper.draw_grid, {}), "points": (paper.draw_points, {"text": paper.points_markdown}),
     "accuracy": (methods.draw_accuracy, {}), "stability": (stability.draw, {}),
-    "scaling": (costs.draw_scaling, {}), "surfaces": (methods.draw_surfaces, {}),
+    "surfaces": (methods.draw_surfaces, {}),
     "seen": (costs.draw_seen, {}), "section": (costs.draw_section, {}),
     "certainty": (certainty.draw, {}), "check": (costs.draw_check, {}),
     "peers": (methods.draw_peers, {"text": methods.peers_markdown}),

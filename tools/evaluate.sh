@@ -9,7 +9,7 @@
 # Output: FOLDER/EXPERIMENT.json, FOLDER/charts; scenes and stores stay in FOLDER/work.
 # Other libraries are measured where they are installed: tools/bench/peers/programs.
 set -euo pipefail
-experiments=(table threads grid points accuracy stability scaling share surfaces seen section peers ablation
+experiments=(table threads grid points accuracy stability share surfaces seen section peers ablation
   outofcore certainty)
 force=no only= size=small
 while [ $# -gt 1 ]; do

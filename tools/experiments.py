@@ -9,7 +9,6 @@ Example: tools/experiments.py build/release/tools table -o table.json --work /tm
 """
 
 import argparse
-import atexit
 import fcntl
 import hashlib
 import json
@@ -23,7 +22,6 @@ import sys
 import tempfile
 import time
 from collections import Counter, namedtuple
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import product
 from pathlib import Path
@@ -261,11 +259,6 @@ class Bench:
         return self.with_store(files, label + "-origins", "--origins",
                                files.environment.with_name("origins.csv"))
 
-    def resized(self, files, model_points, poses):
-        """The hall's environment with a model and a path of other sizes."""
-        other = self.made("hall", f"hall-{model_points}-points-{poses}-poses", (1, model_points, poses))
-        return files._replace(model=other.model, trajectory=other.trajectory)
-
     def store(self, label, environment, *options):
         path = self.work / f"{label}.h5"
         if not path.exists():
@@ -377,6 +370,9 @@ class Bench:
                     out, wall, cpu, peak = self.execute(*words, limit=self.options.limit)
                     seconds += wall
                     report = json.loads(out)
+                    if not isinstance(report["seconds"], dict):  # of a section
+                        report["seconds"] = {"total": report["seconds"], "search": report["search_seconds"],
+                                             "engine": report["engine_seconds"]}
                     report["seconds"].setdefault("total", sum(report["seconds"].values()))  # of a check
                     case["runs"].append({**report, "wall_seconds": wall, "cpu_seconds": cpu,
                                          "peak_resident_bytes": peak, "disk_bytes": self.disk_bytes})
@@ -586,25 +582,6 @@ def sparse(bench, fast, forward):
         bench.keep(parameters, lambda: found)
 
 
-def scaling(bench):
-    """Time by poses, model points, radius and cell size."""
-    hall, (_, model_points, poses) = bench.scene("hall"), sizes("hall", bench.size)
-    most = {"poses": 30_000, "model points": 1_000_000} if bench.size == "full" else {
-        "poses": 10_000, "model points": 100_000}
-    rows = [("poses", n, lambda n: bench.resized(hall, model_points, n), ())
-            for n in (100, 300, 1_000, 3_000, 10_000, 30_000) if n <= most["poses"]]
-    rows += [("model points", n, lambda n: bench.resized(hall, n, poses), ())
-             for n in (1_000, 3_000, 10_000, 30_000, 100_000, 300_000, 1_000_000) if n <= most["model points"]]
-    rows += [("radius", r, lambda r: hall, ("--radius", r)) for r in (0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1.0)]
-    rows += [("cell points", n, lambda n: bench.with_store(
-        hall, f"hall-{bench.size}-cells-{n}", "--cell-points", n), ())
-             for n in (256, 1_024, 4_096, 16_384, 65_536, 262_144)]
-    rows = rows if bench.size != "smoke" else rows[::4]
-    for (vary, value, files, more), engine in product(rows, bench.exact_engines()):
-        bench.measure({"engine": engine.name, "vary": vary, "value": value}, lambda: files(value),
-                      [*engine.options, *more], refusal=MEMORY)
-
-
 def share(bench):
     """What share of a scene a search touches, and what touching more than that would cost."""
     for scene, files in bench.scenes():
@@ -772,129 +749,6 @@ def check(bench):
             "hall", f"hall-{points}", (points, *FULL["hall"][1:])), (), command=words)
 
 
-def demand(bench):
-    """What memory and reading a question demands for each place of a store: what grows from a hall to one
-    with twice as many points, with one thread."""
-    plain = ["--engine", "sweep"]
-    asked = [*plain, "--first-pose", "--clearance", 0.5, "--profile", 0.5]
-    questions = {
-        "set": plain, "first and last poses": [*plain, "--first-pose"],
-        "clearances": [*plain, "--clearance", 0.5], "as check asks": asked,
-        "check, errors": [*asked, "--error-scan", 0.01, "--error-pose", 0.01],
-        "check, floor": [*asked, "--floor", 0.2],
-        "check, ignored box": [*asked, "--ignore-box", "-1000,-1000,-1000,1000,1000,0.5"],
-        "depth": [*plain, "--depth"], "check, shard 1/16": [*asked, "--shard", "1/16"],
-        "kdtree": ["--engine", "kdtree"], "check, ten poses": asked}
-    points = sizes("hall", bench.size)[0]
-    for question, options in bench.some(list(questions.items())):
-        runs = []
-        for count in (points, 2 * points):
-            def files():
-                of = bench.scanned("hall", count)
-                return of if "ten" not in question else bench.changed_poses(
-                    of, lambda poses: poses[::max(1, len(poses) // 10)][:10])
-            case = bench.measure({"question": question, "points": count}, files,
-                                 [*options, "--threads", 1], once=True)
-            runs += case["runs"]
-        less, more = runs
-        places = 65_536 * (more["cells_total"] - less["cells_total"])
-        print(f"{question}: {(more['needed_host_bytes'] - less['needed_host_bytes']) / max(places, 1):.3f} "
-              f"bytes a place, {more['needed_host_bytes'] / 2**20:.1f} MiB in all; {more['bytes_read']}")
-
-
-def memory_cgroup(limit):
-    """The folder of a new memory cgroup with this many bytes, its page cache included; None where this user or
-    this machine cannot make one."""
-    for root, name in (("/sys/fs/cgroup", "memory.max"), ("/sys/fs/cgroup/memory", "memory.limit_in_bytes")):
-        folder = Path(root, "clearway-outofcore")
-        try:
-            folder.mkdir(exist_ok=True)
-            if (folder / name).exists():
-                atexit.register(folder.rmdir)
-                (folder / name).write_text(str(limit))
-                return folder
-            folder.rmdir()
-        except OSError:
-            pass
-    return None
-
-
-def outofcore(bench):
-    """Conversion and questions with a fixed --memory, by the points of a scan that is far larger: with its store
-    in the page cache (warm), not there (cold), and in a memory cgroup of 1.5 times --memory (confined)."""
-    memory = 2**30 if bench.size == "full" else 2**28  # a conversion refuses less than 224 MiB
-    counts = {"smoke": (20_000, 40_000), "small": (10**5, 10**6, 4 * 10**6),
-              "full": (10**6, 10**7, 10**8, 10**9, 12 * 10**8)}[bench.size]
-    questions = {"set": ["--device", "cpu"], **({"set, GPU": ["--device", "cuda"]} if bench.cuda else {}),
-                 "check": ["--device", "cpu", "--first-pose", "--clearance", 0.3, "--profile", 0.5]}
-    _, model_points, poses = sizes("mine", bench.size)
-    clearway, folder = bench.options.programs / "clearway", bench.work / f"outofcore-{bench.size}"
-    files = Files(None, folder / "store.h5", folder / "model.ply", folder / "trajectory.txt")
-    cgroup = memory_cgroup(memory * 3 // 2)
-    if not cgroup:
-        bench.keep({"state": "confined"}, lambda: {"skipped": "not possible here"})
-
-    def converted():
-        shutil.rmtree(folder, ignore_errors=True)
-        folder.mkdir()
-        scene = map(str, (clearway, "scene", "mine", "-o", folder, "--points", points, "--model-points",
-                          model_points, "--poses", poses, "--environment", "-"))
-        with subprocess.Popen(scene, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as made:
-            out, wall, cpu, peak = bench.execute(
-                "clearway", "convert", "-", "-o", files.store, "--memory", memory, "--json", stdin=made.stdout,
-                limit=3 * bench.options.limit)
-        return {"memory_bytes": memory, "wall_seconds": wall, "cpu_seconds": cpu, "peak_resident_bytes": peak,
-                "temporary_bytes": json.loads(out)["temporary_bytes"], "store_bytes": files.store.stat().st_size}
-
-    def at_hand(state):
-        if not files.store.exists():
-            converted()
-        if state != "warm":
-            variants.drop_from_page_cache(files.store)
-        return files
-
-    def command(state, options, result):
-        words = bench.command(files, folder / result.name, ["--memory", memory, *options])
-        return ["/bin/sh", "-c", 'echo $$ > "$0/cgroup.procs" && exec "$@"', cgroup, clearway,
-                *words[1:]] if state == "confined" else words
-
-    for points in counts:
-        shutil.rmtree(folder, ignore_errors=True)
-        case = bench.keep({"points": points, "question": "conversion"}, lambda: attempted(converted, ""))
-        states = ["cold", "warm", *["confined"] * bool(cgroup)] if "failed" not in case["findings"] else []
-        for (question, options), state in product(questions.items(), states):
-            bench.measure({"points": points, "question": question, "state": state}, lambda: at_hand(state), (),
-                          once=True, refusal="", command=lambda _, result: command(state, options, result))
-    shutil.rmtree(folder, ignore_errors=True)
-
-
-def session(bench):
-    """Questions of one pose that a session of the Python module answers, spread over the path: the points
-    that collide alone, and with the least distance up to 1 m."""
-    import clearway  # PYTHONPATH=build/release/python
-    for (scene, files), distance, askers in product(bench.scenes(), (0, 1), (1, bench.cores)):
-        def asked():
-            poses, model = clearway.read_trajectory(files.trajectory), clearway.read_model(files.model)
-            with clearway.Session(files.store, device=bench.here,
-                                  threads=max(1, bench.cores // askers)) as of, ThreadPoolExecutor(askers) as pool:
-                def ask(i):
-                    start = time.monotonic()
-                    pose = poses[i * 7919 % len(poses)][None]  # a prime, so that they are spread over the path
-                    of.search(clearway.Query(model, pose, RADIUS, profile=distance))
-                    return time.monotonic() - start
-
-                found = {"first_question_seconds": ask(0)}
-                count = 20 if bench.size == "smoke" else 1000
-                list(pool.map(ask, range(count)))  # the field's bricks are made
-                start = time.monotonic()
-                seconds = sorted(pool.map(ask, range(count)))
-                return {**found, "questions": count, "median_ms": 1e3 * seconds[count // 2],
-                        "p99_ms": 1e3 * seconds[count * 99 // 100],
-                        "per_second": count / (time.monotonic() - start), "kept_bytes": of.kept_bytes()}
-
-        bench.keep({"scene": scene, "distance": distance, "askers": askers, "device": bench.here}, asked)
-
-
 def certainty(bench):
     """How often a verdict is sure and wrong, of places that stand at the margin: by Monte Carlo, and by
     asking Clearway about thousands of them; and how many cubes inside opaque things are called seen, by
@@ -951,10 +805,10 @@ def certainty(bench):
 
 # Whether an experiment takes --scenes, and a query of the user's.
 EXPERIMENTS = {table: (True, True), threads: (False, False), grid: (False, False), points: (False, False),
-               accuracy: (False, False), stability: (False, False), scaling: (False, False),
+               accuracy: (False, False), stability: (False, False),
                share: (True, False), surfaces: (False, True), seen: (True, False), section: (True, False),
-               peers: (True, True), ablation: (True, True), check: (False, False), demand: (False, False),
-               outofcore: (False, False), session: (True, True), certainty: (False, False)}
+               peers: (True, True), ablation: (True, True), check: (False, False),
+               outofcore: (False, False), certainty: (False, False)}
 
 
 def words_of(choices):
@@ -983,8 +837,7 @@ def main():
                              "smoke: seconds, to try the script out")
     parser.add_argument("--scenes", type=words_of(SCENES), help=f"of {', '.join(SCENES)}; default: all")
     for name in ("--env", "--model", "--trajectory"):
-        parser.add_argument(name, type=Path, help="a query of your own, for table, surfaces, peers, ablation and "
-                                                "session")
+        parser.add_argument(name, type=Path, help="a query of your own, for table, surfaces, peers and ablation")
     parser.add_argument("--device", choices=("auto", "cpu", "cuda"), default="auto",
                         help="cpu measures no GPU; auto measures one where there is one")
     parser.add_argument("--repetitions", type=int, default=3,
@@ -1005,8 +858,8 @@ def main():
         parser.error(f"{options.experiment} has scenes of its own")
     given = [options.env, options.model, options.trajectory]
     if any(given) and not (of_any_query and all(given)):
-        parser.error("--env, --model and --trajectory belong together, and to table, surfaces, peers, "
-                     "ablation and session")
+        parser.error("--env, --model and --trajectory belong together, and to table, surfaces, peers "
+                     "and ablation")
     options.scenes = options.scenes or list(SCENES)
     bench = Bench(options.experiment, options)
     try:

@@ -11,7 +11,7 @@ from charting.plot import (bar_look, legend_in, line, lines, log_axis, log_panel
                            wide_bars, with_unit)
 from charting.record import markdown_table
 from charting.sheet import Sheet
-from charting.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, Style, engine_styles, styles_of
+from charting.style import BLACK, BLUE, GREY, ORANGE, PURPLE, SKY, Style, styles_of
 
 # --- The whole of clearway check, by the number of points and by step -------------------------------
 
@@ -51,24 +51,6 @@ def draw_steps(axes, cases):
                     [f"{case['way']},\n{short(case['points'])} points" for case in cases])
     axes.set(ylabel="seconds", ylim=(0, 1.4 * max(bottom.max(), 1e-3)))
     axes.legend(loc="upper right", ncols=2)
-
-
-# --- A search, by poses, model points, radius and the points of a cell ------------------------------
-
-
-def draw_scaling(record):
-    sheet = Sheet(record, "Time by poses, model points, radius and cell size (hall)", 5.2,
-                  times=("answer",))
-    axes, place = panels(sheet, 2, 2, legend_lines=1)
-    styles = engine_styles(record.names("engine"))
-    log_panels(sheet, axes.flat, "abcd",
-               (("poses", "poses T"), ("model points", "model points M"), ("radius", "radius (m)"),
-                ("cell points", "points of a cell, at most")), "", "answer (s)",
-               lambda panel, vary: lines(sheet, panel, record.where(vary=vary), styles, "engine",
-                                         lambda case: case.answer_seconds()))
-    legend_in(place, styles, len(styles))
-    sheet.say("All axes are logarithmic.")
-    return sheet
 
 
 # --- Seen space, and what more is asked -------------------------------------------------------------

@@ -8,7 +8,7 @@ from matplotlib.ticker import NullLocator
 from charting.labels import place_labels
 from charting.paper import like
 from charting.plot import (fixed_ticks, legend_in, look_of, panels, power, rows_of_bars, seconds_axis,
-                           short, spread, with_unit)
+                           spread, with_unit)
 from charting.record import MEASURED, markdown_table
 from charting.sheet import Sheet
 from charting.style import (BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Style, engine_styles,

@@ -132,7 +132,7 @@ def main():
                 assert (folder / "charts" / f"{experiment}.{kind}").read_bytes().startswith(start), experiment
             text = (folder / "charts" / f"{experiment}.md").read_text()
             assert text == (sizes[experiment] / f"{experiment}.md").read_text(), experiment
-        for experiment in ("engines", "grid", "scaling", "section", "stability"):
+        for experiment in ("engines", "grid", "section", "stability"):
             file = folder / f"{'table' if experiment == 'engines' else experiment}.json.gz"
             failed = any("failed" in {*case, *case.get("findings", {})}
                          for case in json.loads(gzip.decompress(file.read_bytes()))["cases"])
