@@ -9,6 +9,7 @@ Example: tools/experiments.py build/release/tools table -o table.json --work /tm
 """
 
 import argparse
+import atexit
 import fcntl
 import hashlib
 import json
@@ -747,6 +748,72 @@ def check(bench):
 
         bench.measure({"scene": "hall", "points": points, "way": way}, lambda: bench.made(
             "hall", f"hall-{points}", (points, *FULL["hall"][1:])), (), command=words)
+
+
+def memory_cgroup(limit):
+    """The folder of a new memory cgroup with this many bytes, its page cache included; None where this user or
+    this machine cannot make one."""
+    for root, name in (("/sys/fs/cgroup", "memory.max"), ("/sys/fs/cgroup/memory", "memory.limit_in_bytes")):
+        folder = Path(root, "clearway-outofcore")
+        try:
+            folder.mkdir(exist_ok=True)
+            if (folder / name).exists():
+                atexit.register(folder.rmdir)
+                (folder / name).write_text(str(limit))
+                return folder
+            folder.rmdir()
+        except OSError:
+            pass
+    return None
+
+
+def outofcore(bench):
+    """Conversion and questions with a fixed --memory, by the points of a scan that is far larger: with its store
+    in the page cache (warm), not there (cold), and in a memory cgroup of 1.5 times --memory (confined)."""
+    memory = 2**30 if bench.size == "full" else 2**28  # a conversion refuses less than 224 MiB
+    counts = {"smoke": (20_000, 40_000), "small": (10**5, 10**6, 4 * 10**6),
+              "full": (10**6, 10**7, 10**8, 10**9, 12 * 10**8)}[bench.size]
+    questions = {"set": ["--device", "cpu"], **({"set, GPU": ["--device", "cuda"]} if bench.cuda else {}),
+                 "check": ["--device", "cpu", "--first-pose", "--clearance", 0.3, "--profile", 0.5]}
+    _, model_points, poses = sizes("mine", bench.size)
+    clearway, folder = bench.options.programs / "clearway", bench.work / f"outofcore-{bench.size}"
+    files = Files(None, folder / "store.h5", folder / "model.ply", folder / "trajectory.txt")
+    cgroup = memory_cgroup(memory * 3 // 2)
+    if not cgroup:
+        bench.keep({"state": "confined"}, lambda: {"skipped": "not possible here"})
+
+    def converted():
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        scene = map(str, (clearway, "scene", "mine", "-o", folder, "--points", points, "--model-points",
+                          model_points, "--poses", poses, "--environment", "-"))
+        with subprocess.Popen(scene, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as made:
+            out, wall, cpu, peak = bench.execute(
+                "clearway", "convert", "-", "-o", files.store, "--memory", memory, "--json", stdin=made.stdout,
+                limit=3 * bench.options.limit)
+        return {"memory_bytes": memory, "wall_seconds": wall, "cpu_seconds": cpu, "peak_resident_bytes": peak,
+                "temporary_bytes": json.loads(out)["temporary_bytes"], "store_bytes": files.store.stat().st_size}
+
+    def at_hand(state):
+        if not files.store.exists():
+            converted()
+        if state != "warm":
+            variants.drop_from_page_cache(files.store)
+        return files
+
+    def command(state, options, result):
+        words = bench.command(files, folder / result.name, ["--memory", memory, *options])
+        return ["/bin/sh", "-c", 'echo $$ > "$0/cgroup.procs" && exec "$@"', cgroup, clearway,
+                *words[1:]] if state == "confined" else words
+
+    for points in counts:
+        shutil.rmtree(folder, ignore_errors=True)
+        case = bench.keep({"points": points, "question": "conversion"}, lambda: attempted(converted, ""))
+        states = ["cold", "warm", *["confined"] * bool(cgroup)] if "failed" not in case["findings"] else []
+        for (question, options), state in product(questions.items(), states):
+            bench.measure({"points": points, "question": question, "state": state}, lambda: at_hand(state), (),
+                          once=True, refusal="", command=lambda _, result: command(state, options, result))
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def certainty(bench):
