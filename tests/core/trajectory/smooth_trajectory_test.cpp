@@ -120,7 +120,7 @@ SmoothPath smoothed(const std::vector<Pose>& given, double within, double step =
   return path;
 }
 
-double noise(Random& random, double most) { return uniform(random, -most, most); }
+double within(Random& random, double most) { return uniform(random, -most, most); }
 
 /// A drive with bends, stops, turns on the spot and noise, and without jumps.
 std::vector<Pose> random_drive(Random& random) {
@@ -142,8 +142,8 @@ std::vector<Pose> random_drive(Random& random) {
         z += step * climb;
         roll += 0.01 * std::sin(0.1 * static_cast<double>(i));
       }
-      poses.push_back(pose_at(x + noise(random, jitter), y + noise(random, jitter),
-                              z + noise(random, jitter), heading + noise(random, jitter / 4),
+      poses.push_back(pose_at(x + within(random, jitter), y + within(random, jitter),
+                              z + within(random, jitter), heading + within(random, jitter / 4),
                               roll));
     }
   }
@@ -179,7 +179,7 @@ TEST_CASE("noise of a centimetre on a known curve is taken off") {
   for (int i = 0; i < 4000; ++i) {
     const double s = 0.02 * i;
     given.push_back(pose_at(s, 3 * std::sin(s / 12), 0, 0));
-    for (double& value : given.back().translation) value += noise(random, 0.01);
+    for (double& value : given.back().translation) value += within(random, 0.01);
   }
   const SmoothPath path = smoothed(given, 0.04, 0, std::nullopt);
   CHECK(path.control_points < 40);

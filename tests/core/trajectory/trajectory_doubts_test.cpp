@@ -279,7 +279,7 @@ TEST_CASE("the chord's deviation is that of the formula where the curve is uneve
   // A turn on the spot has no curvature.
   const std::vector<Pose> on_the_spot{headed(0, {0, 0, 0}), headed(0, {1, 0, 0}),
                                       headed(quarter, {1, 0, 0})};
-  check_near(chord_deviations(on_the_spot, 2), {0, turned}, 1e-12);
+  check_near(chord_deviations(on_the_spot, 2), std::vector{0.0, turned}, 1e-12);
   // A quarter circle is missing.
   const std::vector<Pose> missing{headed(0, {-0.5, 0, 0}), headed(0, {0, 0, 0}),
                                   headed(quarter, {20, 20, 0}), headed(quarter, {20, 20.5, 0})};
