@@ -263,8 +263,9 @@ def ablation_rows(record, scene):
                 said += (f" after {with_unit(found['peer']['voxels_seconds'], 's')}; "
                          f"{case.wrong():,} of {found['colliding_points']:,} points wrong")
             elif before:
-                said += (f", {before / seconds:.2g} times as fast" if before > seconds else
-                         f", {seconds / before:.2g} times as slow")
+                factor = max(before / seconds, seconds / before)
+                said += (f", {factor:,.{1 if factor < 10 else 0}f} times as "
+                         + ("fast" if before > seconds else "slow"))
             said += f" (1/{found['every_pose']})" if found.get("every_pose", 1) > 1 else ""
             yield method, seconds, said
             before = seconds
