@@ -126,7 +126,7 @@ PEERS = {"nanoflann": ("nanoflann", Style(SKY, "p", "none", "")),
          "open3d": ("Open3D", Style(PURPLE, ">", "none", "")),
          "octomap": ("OctoMap", Style(YELLOW, "*", "none", "")),
          "3dtk": ("3DTK (the paper's)", Style(YELLOW, "8", "none", "")),
-         "cugrid": ("3DTK (the paper's), GPU", Style(VERMILION, "8", "none", "")),
+         "cugrid": ("3DTK's CuGrid, GPU", Style(VERMILION, "8", "none", "")),
          "cubql": ("cuBQL, GPU", Style(BLUE, "H", "none", ""))}
 ROW = 0.4       # decades that a row of the band takes
 SCENES = ("hall", "tunnel", "plant", "mine", "street")
@@ -161,6 +161,7 @@ def marks_of(scene, record, table):
 
 def draw_peers(record, table=None):
     """table: the engines of Clearway on the same scenes, where they were measured."""
+    of_libraries = record.machine["memory_bytes"] / 2**30
     if table:  # it knows the GPU and the build
         record.machine, record.clearway = table.machine, table.clearway
     marks = {scene: list(marks_of(scene, record, table)) for scene in SCENES
@@ -196,6 +197,8 @@ def draw_peers(record, table=None):
               f"Threads: {record.cases[0]['threads']}, or a GPU. Clearway's times are preparing the "
               "question and searching; those of others are their search alone, without building "
               "their tree. Both axes are logarithmic.")
+    if round(of_libraries) != round(record.machine["memory_bytes"] / 2**30):
+        sheet.say(f"Libraries other than CuGrid were measured on a host with {of_libraries:.0f} GiB.")
     alone = [scene for scene in marks if not record.where(scene=scene)]
     if alone:
         sheet.say(f"The others were not measured in: {', '.join(alone)}.")
