@@ -112,8 +112,8 @@ def drawn_sheets(*arguments):
 
 
 def committed(folder):
-    """A record of each experiment: that at full size where there is one."""
-    for size in ("small", "full"):
+    """A record of each experiment: that at full size where there is one, or else of the street."""
+    for size in ("small", "street", "full"):
         for record in (FIGURES / size).glob("*.json.gz"):
             shutil.copy(record, folder)
             yield record.name.removesuffix(".json.gz"), record.parent
