@@ -11,6 +11,7 @@
 #include "core/util/format.hpp"
 #include "io/files/facts_json.hpp"
 #include "io/result/answer.hpp"
+#include "io/result/conflicts/conflict_fields.hpp"
 #include "io/result/floor_facts.hpp"
 
 namespace clearway::tool {
