@@ -400,6 +400,12 @@ class Power:
         return f"{self.p:.2f} ({self.low:.2f} to {self.high:.2f})"
 
 
+def n_log_n(record):
+    """A sentence: with which power n log n grows at the middle of the samples."""
+    middle = np.median([case["points"] for case in record.cases])
+    return f"n log n grows with a p of {1 + 1 / np.log(middle):.2f} at these n."
+
+
 def points_markdown(record):
     """With which power of the number of points the time grows, as a Markdown table."""
     rows = []
@@ -411,8 +417,8 @@ def points_markdown(record):
                          f"{100 * fit.of_line:.1f} %"])
     return markdown_table(["engine", "samples", "p (95 %)", "residual", "with p = 1"], rows,
                           "The search takes a + b n^p for n environment points: a fit to relative errors, and in "
-                          f"brackets the middle 95 % of {RESAMPLES} bootstrap samples. n log n grows with a "
-                          "p of 1.06 at these n. Residual: root mean square of the relative residuals.")
+                          f"brackets the middle 95 % of {RESAMPLES} bootstrap samples. {n_log_n(record)} "
+                          "Residual: root mean square of the relative residuals.")
 
 
 def draw_points(record):
@@ -440,7 +446,7 @@ def draw_points(record):
     together.set(title="a  all, logarithmic", xlabel="environment points", ylabel="answer (s)")
     room_for_failures(together)
     sheet.say("Lines: the search takes a + b n^p for n points, a fit to relative errors; in brackets "
-              f"the middle 95 % of {RESAMPLES} bootstrap samples. n log n grows with a p of 1.06 here.")
+              f"the middle 95 % of {RESAMPLES} bootstrap samples. {n_log_n(record)}")
     legend_in(place, styles, 4)
     return sheet
 
